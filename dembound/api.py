@@ -21,6 +21,7 @@ from dembound.accuracy.budget import Budget
 from dembound.accuracy.cause import Truth
 from dembound.accuracy.estimate import estimate_if_asked, estimate_results
 from dembound.accuracy.judge import Advice
+from dembound.boundaries import Motion
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
@@ -31,8 +32,9 @@ from dembound.running import Progress, resume_case, run_case
 from dembound.running.recorded import recorded_case
 from dembound.running.unfinished import left_of
 from dembound.studies import all_sides, calibration
+from dembound.studies.asked import Calibrating, Ends, Loading
 from dembound.studies.calibration import Calibration
-from dembound.studies.laboratory.sample import Ends, sample_of
+from dembound.studies.laboratory.sample import sample_of
 from dembound.studies.laboratory.study import SHARES, Tested, perform, specimens_of
 from dembound.studies.laboratory.tables import ratios_of, write_tables
 from dembound.studies.sweep.study import Options, Report
@@ -231,8 +233,8 @@ def laboratory_test(
     seeds: int = 4,
     width: float | None = None,
     height: float | None = None,
-    ends: Ends = "smooth",
-    damp: float = 0.7,
+    ends: Ends = Loading.ends,
+    damp: float = Loading.damp,
     rate: float | None = None,
     pressures: Sequence[float] | None = None,
     shares: Sequence[float] = SHARES,
@@ -256,7 +258,7 @@ def laboratory_test(
     Raises CaseError for a case or numbers that are not valid, RunError if all samples have failed. After an interrupt
     the same call continues what is left.
     """
-    sample = sample_of(_of_disks(case, "samples have disks"), test, width, height, ends=ends, damp=damp, rate=rate)
+    sample = sample_of(_of_disks(case, "samples have disks"), test, Loading(width, height, ends, damp, rate))
     specimens = specimens_of(sample, seeds, pressures)
     options, told = Options(processes=processes, anew=anew), report or (lambda standing: None)
     try:
@@ -275,23 +277,32 @@ def laboratory_test(
     return found
 
 
-def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]:
+def calibrate(
+    case: Case,
+    side: str,
+    *,
+    motion: Motion | None = None,
+    report: calibration.Report | None = None,
+    **options: Any,
+) -> tuple[Case, Calibration]:
     """Find the factor β of one side for P or S waves; returns the case with this β, and the record of the calibration.
 
-    options : motion, method, start, tolerance, full, report, see `dembound.studies.calibration.calibrate`.
+    options : method, start, tolerance, full, see `dembound.studies.calibration.calibrate`, as for motion and report.
 
     Raises CaseError when the side has no dashpots or its motion is held, RunError when β does not converge.
     """
-    found = calibration.calibrate(_of_disks(case), side, **options)
+    found = calibration.calibrate(_of_disks(case), side, Calibrating(**options), motion=motion, report=report)
     return change(case, {f"boundary.{side}.{found.factor}": found.result}), found
 
 
-def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
+def calibrate_all(
+    case: Case, *, report: calibration.Report | None = None, **options: Any
+) -> tuple[Case, list[Calibration]]:
     """Find all factors β of all sides with dashpots, for the waves whose motion is not held; see `calibrate`.
 
-    options : as for `calibrate`, without motion.
+    report, options : as for `calibrate`.
     """
-    found = all_sides.calibrate_all(_of_disks(case), **options)
+    found = all_sides.calibrate_all(_of_disks(case), Calibrating(**options), report=report)
     return change(case, all_sides.changes_of(found)), found
 
 

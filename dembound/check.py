@@ -10,7 +10,7 @@ from dembound.machine import memory_here
 from dembound.motion.echoes import echoes
 from dembound.motion.endings import peak_rule, silent_rule
 from dembound.motion.kind import Plan
-from dembound.motion.resources import has_in_words, in_words
+from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.simulation import Simulation
 from dembound.results.histories import split_in_words
 from dembound.running import plan, require_ready, space_in_words, space_warnings, warnings_before

@@ -1,7 +1,8 @@
 """Numbers as text, and texts by name, for tables and messages."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 Entries = Iterator[tuple[str, str]]
 """Names and their texts, in the order of printing."""
@@ -35,6 +36,37 @@ def in_one_unit(values: Sequence[float], unit: str, digits: int = 3) -> tuple[li
     fitting = [each for each in PREFIXES if (each[0] >= 1.0 if unit in UPWARDS else each[0] <= 1.0)]
     factor, name = next((each for each in fitting if each[0] <= largest), fitting[-1] if largest > 0.0 else (1.0, ""))
     return [f"{float(f'{value / factor:.{digits}g}'):.12g}" for value in values], f"{name}{unit}"
+
+
+class Quantity(NamedTuple):
+    """A number under a name, for scripts, and what is said of it.
+
+    name : its key in ``summary.json``. value : plain JSON value, in its SI unit; None where there is none.
+    sentence : in which {} is the number with its unit and a prefix, and {:…} the number alone; or nothing.
+    """
+
+    name: str
+    unit: str
+    value: Any
+    sentence: str = ""
+
+    @property
+    def text(self) -> str:
+        """The sentence with its number; empty without one."""
+        if self.value is None:
+            return ""
+        return self.sentence.format(with_unit(self.value, self.unit) if "{}" in self.sentence else self.value)
+
+
+def numbers(quantities: Iterable[Quantity]) -> dict[str, Any]:
+    """The values of quantities by name, as in ``summary.json``."""
+    return {each.name: each.value for each in quantities}
+
+
+def sentences(quantities: Iterable[Quantity], *names: str) -> str:
+    """What is said of the quantities with these names, of which there is a number, with commas between."""
+    texts = {each.name: each.text for each in quantities}
+    return ", ".join(text for name in names if (text := texts[name]))
 
 
 def columns(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:

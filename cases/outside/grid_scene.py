@@ -10,11 +10,12 @@ from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
 from dembound.casefile.tables import Run
 from dembound.continuum.part import GridBody, GridPart
+from dembound.motion.memory import total
 from dembound.motion.part import System
-from dembound.motion.resources import motion_bytes, thread_count_for
 from dembound.motion.scene import Scene
 from dembound.motion.stability import largest_eigenvalue
 from dembound.motion.state import Layout
+from dembound.motion.threads import thread_count_for
 
 
 class GridScene(Scene):
@@ -100,7 +101,7 @@ class GridScene(Scene):
         """Bytes of its motion and its law."""
         law = self.body.law(1.0)
         arrays = (values for bundle in (*law, law) for values in bundle if isinstance(values, np.ndarray))
-        return motion_bytes(self.layout.count) + sum(values.nbytes for values in arrays)
+        return total({"slot": self.layout.count}, "motion") + sum(values.nbytes for values in arrays)
 
     @property
     def attributes(self) -> dict[str, Any]:

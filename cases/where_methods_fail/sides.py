@@ -8,6 +8,7 @@ from dembound.disks.matching import homogenised_beta
 from dembound.disks.stability import choose_step, step_limit
 from dembound.kinds import kind_of
 from dembound.motion.simulation import Simulation
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 from dembound.studies.noise import short_run
 
@@ -106,7 +107,7 @@ def narrow(height: float, free: bool = True) -> float:
     boundary = {"left": {"type": "fixed"}, "right": {"type": "viscous"}} | ({} if free else PERIODIC)
     wave = {"pulse": {"type": "cosine", "amplitude": 0.5, "period": 0.1}}
     scene = disks("B", (40.0, height), ("y",), boundary=boundary, wave=wave)
-    found = calibrate(scene.case, "right", tolerance=1e-4)
+    found = calibrate(scene.case, "right", Calibrating(tolerance=1e-4))
     return found.result / homogenised_beta(scene, "right", "p") - 1.0
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from dembound.bar.banded import is_stable, largest_stable_step
-from dembound.bar.cost import run_bytes
 from dembound.bar.layers import EndLayer, continued
+from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar

@@ -1,6 +1,7 @@
 """Facts about the case of a bar, computed without running it."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,14 +9,14 @@ from dembound.bar.echoes import ROUNDING, returned_of_waves
 from dembound.bar.linear_steps import carrying_lattices
 from dembound.bar.scene import BarScene
 from dembound.bar.stability import unit_step
-from dembound.bar.summary import describe_bar, describe_end
+from dembound.bar.summary import describe_end, part_quantities
 from dembound.boundaries.description import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import COARSEST, Bar, BarRange
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
-from dembound.words import Entries, percent, with_unit
+from dembound.words import Entries, Quantity, percent, sentences, with_unit
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
@@ -33,8 +34,10 @@ def bar_facts(scene: BarScene, time_step: float) -> Entries:
     yield "Courant number", f"{time_step / unit_step(scene):.3g}"
     if case.bar.range:
         yield "bar", f"{case.bar.length:g} m long"
-        for given, start, part in zip(case.bar.range, case.bar.starts, case.bar.parts, strict=True):
-            yield f"range {given.name}", _range_in_words(given, start, part)
+        for given, start, part, own in zip(
+            case.bar.range, case.bar.starts, case.bar.parts, scene.rod.ranges, strict=True
+        ):
+            yield f"range {given.name}", _range_in_words(given, start, part, part_quantities(part, own))
     else:
         yield from _bar_facts(scene)
     for side in scene.edges:
@@ -52,11 +55,10 @@ def bar_facts(scene: BarScene, time_step: float) -> Entries:
 
 def _bar_facts(scene: BarScene) -> Entries:
     """Length, section and material of a uniform bar."""
-    described, bar = describe_bar(scene), scene.case.bar
-    section = f"section {described['section']:.4g} m², density {described['density']:g} kg/m³"
-    yield "bar", f"{bar.length:g} m long, {section}"
-    yield "stiffness", f"E = {with_unit(bar.modulus, 'Pa')}, c = {with_unit(bar.speed, 'm/s')}"
-    yield from _material_facts(bar)
+    found = part_quantities(scene.case.bar, scene.rod.ranges[0])
+    yield "bar", sentences(found, "length", "section", "density")
+    yield "stiffness", sentences(found, "youngs_modulus", "wave_speed")
+    yield from _material_facts(scene.case.bar, found)
 
 
 def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
@@ -94,12 +96,12 @@ def method_in_words(case: BarCase) -> str:
     return f"{case.method.type}" + "".join(f", {key} = {show(value)}" for key, value in keys.items())
 
 
-def _range_in_words(given: BarRange, start: float, part: Bar) -> str:
+def _range_in_words(given: BarRange, start: float, part: Bar, found: Sequence[Quantity]) -> str:
     """Place, material, motion and left interface of a range."""
     words = [
-        f"{start:.4g} to {start + part.length:.4g} m, section {part.area:.4g} m²",
+        f"{start:.4g} to {start + part.length:.4g} m, {sentences(found, 'section')}",
         f"ρ = {part.density:g} kg/m³, c = {part.speed:.4g} m/s, ρcA = {part.density * part.speed * part.area:.4g} kg/s",
-        *(text for _, text in _material_facts(part)),
+        *(text for _, text in _material_facts(part, found)),
     ]
     words += [f"starts at {given.velocity:g} m/s"] * (given.velocity != 0.0)
     if given.interface == "contact":
@@ -107,26 +109,18 @@ def _range_in_words(given: BarRange, start: float, part: Bar) -> str:
     return "; ".join(words)
 
 
-def _material_facts(bar: Bar) -> Entries:
+def _material_facts(bar: Bar, found: Sequence[Quantity]) -> Entries:
     """The stress and stretch at which a bar breaks, how its cracks open, its strain rates, and its attenuation."""
-    stretch, strength = bar.breaking_stretch, bar.breaking_stretch * bar.modulus
-    yield (
-        "strength",
-        "unbreakable" if np.isinf(stretch) else f"{with_unit(strength, 'Pa')}, critical stretch {stretch:.3g}",
-    )
+    yield "strength", sentences(found, "strength", "critical_stretch") or "unbreakable"
     if bar.fracture_energy is not None:
-        length, opening = bar.characteristic_length, bar.fracture.opening(strength)
-        yield (
-            "cracks",
-            f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {with_unit(opening, 'm')}, characteristic "
-            f"length EG_f/σ_t² = {with_unit(length, 'm')}, spacing at most {with_unit(COARSEST * length, 'm')}",
-        )
+        opens = sentences(found, "fracture_energy", "crack_opening", "characteristic_length")
+        yield "cracks", f"{opens}, spacing at most {with_unit(COARSEST * bar.characteristic_length, 'm')}"
     if bar.strength_rates is not None:
         slowest, fastest = (f"{rate:g} 1/s" for rate in bar.strength_rates)
         largest = with_unit(bar.largest_strength, "Pa")
-        yield "strain rates", f"strength from {with_unit(strength, 'Pa')} at {slowest} to {largest} at {fastest}"
+        yield "strain rates", f"strength from {sentences(found, 'strength')} at {slowest} to {largest} at {fastest}"
     if bar.attenuation > 0.0:
-        yield "attenuation", f"α = {bar.attenuation:g} 1/m"
+        yield "attenuation", sentences(found, "attenuation")
 
 
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:

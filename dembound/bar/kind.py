@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dembound.bar.cost import storage_of
 from dembound.bar.facts import bar_facts
 from dembound.bar.linear_steps import front_of_bar, sources_of_bar
+from dembound.bar.memory import storage_of
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step, trials_of_bar
@@ -17,8 +17,8 @@ from dembound.bar.warnings import bar_warnings
 from dembound.bar.warnings_after import warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Stages
+from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
-from dembound.motion.resources import Storage
 from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
@@ -73,7 +73,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def storage(self, scene: BarScene) -> Storage:
         """Bytes on disk of the results of a bar, from its nodes and the lengths of its bonds."""
-        return storage_of(scene)
+        return storage_of(scene.case)
 
     def facts(self, scene: BarScene, time_step: float) -> Entries:
         """The bar, its method, boundaries and loads in words."""

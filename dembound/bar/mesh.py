@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.motion.state import Arrays
-from dembound.results.vtk import in_space, shown
+from dembound.results.vtk import in_space, passed_through, shown
 
 if TYPE_CHECKING:
     import meshio
@@ -66,8 +66,7 @@ def bar_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh
         "volume": particles["volume"],
         "displacement": displacement,
         "velocity": snapshot["velocity"],
-        "stress": snapshot["stress"],
-        "damage": snapshot["damage"],
+        **passed_through(snapshot),
     }
     if "peak_velocity" in particles:
         data["peakVelocity"] = particles["peak_velocity"]

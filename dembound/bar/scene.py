@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.bar.body import BarBody
-from dembound.bar.cost import must_fit_here
 from dembound.bar.layers import ENDS, EndLayer, LayerTie, layers_of
+from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
 from dembound.boundaries.edge import BoundaryMedium, Edge
 from dembound.boundaries.support import SupportBuilder, Supports

@@ -15,7 +15,7 @@ from dembound.methods.rod import Range
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 from dembound.results.warnings import share_of_supplied
-from dembound.words import percent, with_unit
+from dembound.words import Quantity, numbers, percent, with_unit
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
 """Note in the summary where a bar without a fracture energy has spalled more than once."""
@@ -83,34 +83,37 @@ def describe_bar(scene: BarScene) -> dict[str, Any]:
     """
     bar, ranges = scene.case.bar, scene.rod.ranges
     if not bar.range:
-        return _describe_part(bar, ranges[0])
+        return numbers(part_quantities(bar, ranges[0]))
     each = [
         {"name": given.name, "start": start, "interface": given.interface, "velocity": given.velocity}
-        | _describe_part(part, numbers)
-        for given, start, part, numbers in zip(bar.range, bar.starts, bar.parts, ranges, strict=True)
+        | numbers(part_quantities(part, own))
+        for given, start, part, own in zip(bar.range, bar.starts, bar.parts, ranges, strict=True)
     ]
     strength = bar.least_strength if np.isfinite(bar.least_strength) else None
     return {"length": bar.length, "strength": strength, "ranges": each}
 
 
-def _describe_part(bar: Bar, numbers: Range) -> dict[str, float | None]:
-    """A uniform bar in numbers, see `describe_bar`."""
-    breaks = np.isfinite(bar.breaking_stretch)
-    return {
-        "length": bar.length,
-        "spacing": numbers.spacing,
-        "section": bar.area,
-        "density": bar.density,
-        "youngs_modulus": bar.modulus,
-        "wave_speed": bar.speed,
-        "impedance": bar.density * bar.speed,
-        "critical_stretch": bar.breaking_stretch if breaks else None,
-        "strength": bar.breaking_stretch * bar.modulus if breaks else None,
-        "attenuation": bar.attenuation,
-        "fracture_energy": bar.fracture_energy,
-        "crack_opening": bar.fracture.opening(bar.breaking_stretch * bar.modulus) if bar.fracture_energy else None,
-        "characteristic_length": bar.characteristic_length if bar.fracture_energy else None,
-    }
+def part_quantities(bar: Bar, own: Range) -> list[Quantity]:
+    """The numbers of a uniform bar or of a range, of bars that do not break or open without those of it."""
+    stretch = bar.breaking_stretch if np.isfinite(bar.breaking_stretch) else None
+    strength, opening, length = bar.breaking_stretch * bar.modulus, None, None
+    if bar.fracture_energy:
+        opening, length = bar.fracture.opening(strength), bar.characteristic_length
+    return [
+        Quantity("length", "m", bar.length, "{:g} m long"),
+        Quantity("spacing", "m", own.spacing),
+        Quantity("section", "m²", bar.area, "section {:.4g} m²"),
+        Quantity("density", "kg/m³", bar.density, "density {:g} kg/m³"),
+        Quantity("youngs_modulus", "Pa", bar.modulus, "E = {}"),
+        Quantity("wave_speed", "m/s", bar.speed, "c = {}"),
+        Quantity("impedance", "kg/(m² s)", bar.density * bar.speed),
+        Quantity("critical_stretch", "1", stretch, "critical stretch {:.3g}"),
+        Quantity("strength", "Pa", None if stretch is None else strength, "{}"),
+        Quantity("attenuation", "1/m", bar.attenuation, "α = {:g} 1/m"),
+        Quantity("fracture_energy", "J/m²", bar.fracture_energy, "G_f = {:g} J/m²"),
+        Quantity("crack_opening", "m", opening, "open at w_c = 2G_f/σ_t = {}"),
+        Quantity("characteristic_length", "m", length, "characteristic length EG_f/σ_t² = {}"),
+    ]
 
 
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -29,11 +28,8 @@ LOWERED = {
 """What lowers the error by a cause by hand."""
 
 
-class Truth(StrEnum):
-    """The motion with which a case is compared."""
-
-    disks = "disks"
-    rock = "rock"
+Truth = Literal["disks", "rock"]
+"""The motion with which a case is compared."""
 
 
 Error = Annotated[
@@ -116,7 +112,7 @@ def advise_cases(
         case = load_case(path, changes)
         with watched(case.name) as watching:
             table = Table(case, bounds, watching)
-            found = advise(case, bounds, None if of is None else of.value, kept, seeds, longest, table)
+            found = advise(case, bounds, of, kept, seeds, longest, table)
         _print(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
         if bound is None:
             _print(f"write one: dembound advise {path} --error 3%")

@@ -195,7 +195,7 @@ Name = Annotated[str | None, typer.Option(help="Name of the results folder; by d
 
 
 class Side(StrEnum):
-    """The sides of a scene."""
+    """The sides of a scene; an enumeration, as lists of options need one."""
 
     left = "left"
     right = "right"

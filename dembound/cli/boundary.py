@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError
 from dembound.machine import one_thread_for_matrices
 from dembound.words import percent
@@ -72,7 +73,7 @@ def boundary(
     quick: Annotated[
         bool, typer.Option("--quick", help="Quick estimate with a continuum in place of the disks.")
     ] = False,
-    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
+    table: CurveTable = None,
     changes: Settings = None,
 ) -> None:
     """Compute the energy that sides reflect, by angle and frequency.
@@ -91,8 +92,6 @@ def boundary(
         measured_sides,
     )
     from dembound.plot.reflection import plot_reflection
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
 
     prepare_computing(None)
     if types and quick:
@@ -128,12 +127,8 @@ def boundary(
             figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
         ending = f"_{side}" if layer is None else f"_{side}_{layer}"
         picture = output if len(parts) == 1 else output.with_stem(f"{output.stem}{ending}")
-        save(figure, picture, title)
-        out.print(f"wrote {picture}")
-        if table is not None:
-            lines = table if len(parts) == 1 else table.with_stem(f"{table.stem}{ending}")
-            write_lines(figure, lines)
-            out.print(f"wrote {lines}")
+        lines = table if table is None or len(parts) == 1 else table.with_stem(f"{table.stem}{ending}")
+        leave(figure, picture, title, lines)
 
 
 def _table(text: str) -> dict[str, Any]:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -22,7 +21,9 @@ from dembound.cli.app import (
     writable,
 )
 from dembound.cli.console import compact_table, out
+from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
+from dembound.studies.asked import Calibrating
 
 if TYPE_CHECKING:
     from dembound.casefile.disks import DiskCase
@@ -34,24 +35,15 @@ CALIBRATED = "_calibrated"
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 
 
-class WaveType(StrEnum):
-    """Kinds of waves to calibrate for."""
-
-    p = "p"
-    s = "s"
-
-
-class CalibrationMethod(StrEnum):
-    """Ways to find β."""
-
-    impedance = "impedance"
-    ratio = "ratio"
-    homogenised = "homogenised"
+WaveType = Literal["p", "s"]
+"""Kinds of waves to calibrate for."""
 
 
 @app.command("calibrate")
+@with_tables
 def calibrate_sides(
     case: OneCase,
+    *,
     boundary: Annotated[
         Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
     ] = None,
@@ -61,17 +53,7 @@ def calibrate_sides(
     wave: Annotated[
         WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
     ] = None,
-    method: Annotated[
-        CalibrationMethod,
-        typer.Option(
-            metavar="METHOD",
-            help="impedance: solve for β, or keep the matched β where it returns less; ratio: multiply by M_out/M_in, "
-            "as published; homogenised: the matched β, no run.",
-        ),
-    ] = CalibrationMethod.impedance,
-    start: Annotated[float | None, typer.Option(help="First β; by default the case's own.")] = None,
-    tolerance: Annotated[float, typer.Option(help="Largest |M_out/M_in − 1| to accept.", min=1e-9)] = 1e-3,
-    full: Annotated[bool, typer.Option("--full", help="Use the whole scene instead of a short strip.")] = False,
+    how: Calibrating,
     output: Output = Path("results"),
     calibrated: Annotated[
         Path | None,
@@ -99,24 +81,17 @@ def calibrate_sides(
     _one_or_all(boundary, every, wave)
     prepare_computing(threads)
     loaded = load_disks(case, changes, name)
-    options: dict[str, Any] = {"method": method.value, "start": start, "tolerance": tolerance, "full": full}
     plain = loaded.name.removesuffix(CALIBRATED)
     folder = output / f"{plain}_calibration"
     target = calibrated or case.with_name(f"{plain}{CALIBRATED}.toml")
     text = text_for(target, case, loaded, changes)
     _require_no_other(target, text, _factors(loaded, boundary, wave))
     if boundary is None:
-        found = calibrate_all(loaded, report=_print_pass_of_side, **options)
+        found = calibrate_all(loaded, how, report=_print_pass_of_side)
         _print_table(found)
         _leave_all(found, folder)
     else:
-        one = calibrate(
-            loaded,
-            boundary.value,
-            motion=wave.value if wave else None,  # type: ignore[arg-type]
-            report=_print_pass,
-            **options,
-        )
+        one = calibrate(loaded, boundary.value, how, motion=wave, report=_print_pass)
         _print_result(one)
         found = [one]
         _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
@@ -131,7 +106,7 @@ def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> li
 
     if boundary is None:
         return [f"boundary.{side}.beta_{motion}" for side, motion in factors_of(case)]
-    motion = calibrated_motion(case, boundary.value, wave.value if wave else None)  # type: ignore[arg-type]
+    motion = calibrated_motion(case, boundary.value, wave)
     return [f"boundary.{boundary.value}.beta_{motion}"]
 
 
@@ -194,7 +169,6 @@ def _leave_summary(
     """Write the summary and a picture of the passes; records : one of each."""
     from dembound.files import remove
     from dembound.plot.stability import plot_convergence
-    from dembound.plot.style import save
     from dembound.results.text_files import write_json
 
     write_json(folder / "summary.json", summary)
@@ -202,8 +176,7 @@ def _leave_summary(
     picture = folder / "convergence.png"
     remove(picture)  # one of an earlier calibration with another method
     if found[0].beta:
-        save(plot_convergence(records), picture)
-        out.print(f"wrote {picture}")
+        leave(plot_convergence(records), picture)
 
 
 def _print_pass(found: Calibration, of: str = "") -> None:

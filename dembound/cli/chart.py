@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, few, load_case, prepare_computing
 from dembound.cli.console import err, out, print_rows
+from dembound.cli.options import names_of
 from dembound.interrupts import exit_code_of
 
 if TYPE_CHECKING:
@@ -20,28 +20,16 @@ if TYPE_CHECKING:
     from dembound.running import Progress
 
 
-class ChartQuantity(StrEnum):
-    """Quantities of the monitors that are compared."""
-
-    velocity = "velocity"
-    displacement = "displacement"
-    stress = "stress"
+ChartQuantity = Literal["velocity", "displacement", "stress"]
+"""Quantities of the monitors that are compared."""
 
 
-class ChartComponent(StrEnum):
-    """Components of the monitors' motion that are compared."""
-
-    x = "x"
-    y = "y"
+ChartComponent = Literal["x", "y"]
+"""Components of the monitors' motion that are compared."""
 
 
-class ChartReference(StrEnum):
-    """What errors are measured against."""
-
-    exact = "exact"
-    extended = "extended"
-    finer = "finer"
-    finest = "finest"
+ChartReference = Literal["exact", "extended", "finer", "finest"]
+"""What errors are measured against."""
 
 
 @app.command("chart")
@@ -57,8 +45,9 @@ def chart(
         ),
     ] = None,
     quantity: Annotated[
-        ChartQuantity, typer.Option(metavar="QUANTITY", help=f"Quantity compared: {', '.join(ChartQuantity)} (bars).")
-    ] = ChartQuantity.velocity,
+        ChartQuantity,
+        typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars)."),
+    ] = "velocity",
     component: Annotated[
         ChartComponent | None, typer.Option(help="Component compared; by default the largest in the reference.")
     ] = None,
@@ -95,9 +84,9 @@ def chart(
     options = Options(
         named=combinations(loaded, parsed_options(vary)) if vary else None,
         repeats=repeats,
-        reference=reference.value if reference else None,
-        of=of.value if of else None,
-        requested=Requested(quantity.value, component.value if component else None, monitor),
+        reference=reference,
+        of=of,
+        requested=Requested(quantity, component, monitor),
     )
     folder = output / f"{loaded.name}_chart"
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import MORE, PICTURE, Name, Output, PictureTitle, Settings, app, load_case, load_disks, writable
+from dembound.cli.app import MORE, PICTURE, Name, Output, PictureTitle, Settings, app, load_case, load_disks
 from dembound.cli.console import compact_table, out
+from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def dispersion(
     check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and print their differences.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
     title: PictureTitle = None,
-    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
+    table: CurveTable = None,
     changes: Settings = None,
 ) -> None:
     """Print wave speeds on bars, and the nodes a wavelength needs.
@@ -92,7 +93,6 @@ def dispersion(
     Of peridynamics and of central differences, for the bars of cases, or for all combinations of the options.
     """
     from dembound.plot.dispersion import plot_dispersion
-    from dembound.plot.style import save
     from dembound.studies.dispersion import lattices, lattices_of, write_table
 
     own = {"--horizon": horizons, "--spacing": spacings, "--time-step": time_steps, "--wave-speed": wave_speed}
@@ -105,8 +105,7 @@ def dispersion(
         speed = WAVE_SPEED if wave_speed is None else wave_speed
         shown = lattices(horizons or HORIZONS, spacings or SPACINGS, time_steps or TIME_STEPS, speed)
     out.print(_overview(shown))
-    save(plot_dispersion(shown, _simulated(shown) if check else ()), output, title)
-    out.print(f"wrote {output}")
+    leave(plot_dispersion(shown, _simulated(shown) if check else ()), output, title)
     if table is not None:
         write_table(shown, table)
         out.print(f"wrote {table}")

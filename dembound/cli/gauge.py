@@ -11,7 +11,7 @@ from rich.table import Table
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.options import with_tables
+from dembound.cli.options import leave, with_tables
 from dembound.cli.results import results_file
 from dembound.cli.signal_options import FILE, SignalOptions
 
@@ -99,10 +99,8 @@ def gauge(
     out.print(_overview(found, sources, None if known is None else known.strength))
     if output is not None:
         from dembound.plot.gauge import plot_gauge
-        from dembound.plot.style import save
 
-        save(plot_gauge(gauge, found), output, title)
-        out.print(f"wrote {output}")
+        leave(plot_gauge(gauge, found), output, title)
 
 
 def _overview(found: Findings, sources: Sequence[str], known: tuple[float, float] | None) -> Table:

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, writable
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.options import with_tables
+from dembound.cli.options import leave, with_tables
 from dembound.cli.results import results_file
 from dembound.cli.signal_options import FILE, SignalOptions
 from dembound.errors import CaseError
@@ -114,10 +114,8 @@ def hopkinson(
     out.print(_overview(found, equilibrium))
     if output is not None:
         from dembound.plot.hopkinson import plot_hopkinson
-        from dembound.plot.style import save
 
-        save(plot_hopkinson(faces, found), output, title)
-        out.print(f"wrote {output}")
+        leave(plot_hopkinson(faces, found), output, title)
     if table is not None:
         found.write(table)
         out.print(f"wrote {table}")

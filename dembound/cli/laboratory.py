@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +15,7 @@ from dembound.cli.options import with_tables
 from dembound.cli.sweep import FAILED, print_warnings, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
+from dembound.studies.asked import Loading
 from dembound.words import in_one_unit, percent, with_unit
 
 if TYPE_CHECKING:
@@ -26,39 +26,11 @@ if TYPE_CHECKING:
     from dembound.studies.sweep.study import Options, Standing
     from dembound.studies.sweep.tables import Statistic
 
-SAMPLES = "Samples and loading"
-"""Panel of the help."""
-
-
-class EndsKind(StrEnum):
-    """How platens hold the ends."""
-
-    smooth = "smooth"
-    grips = "grips"
-
 
 @dataclass(frozen=True)
-class LoadingOptions:
+class LoadingOptions(Loading):
     """Samples, how they are loaded, and where they run."""
 
-    width: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Width of the sample (m); by default the case's.", rich_help_panel=SAMPLES),
-    ] = None
-    height: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Height (m); twice a given width by default.", rich_help_panel=SAMPLES),
-    ] = None
-    ends: Annotated[
-        EndsKind, typer.Option(help="Platens hold the normal motion only, or all.", rich_help_panel=SAMPLES)
-    ] = EndsKind.smooth
-    damp: Annotated[
-        float, typer.Option(min=0.0, help="Local damping; strengths depend on it.", rich_help_panel=SAMPLES)
-    ] = 0.7
-    rate: Annotated[
-        float | None,
-        typer.Option(min=0.0, help="Strain rate (1/s); by default quasi-static.", rich_help_panel=SAMPLES),
-    ] = None
     processes: Annotated[
         int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
     ] = None
@@ -68,8 +40,7 @@ class LoadingOptions:
         """The sample of a test of the material of a case; raises CaseError as `sample_of`."""
         from dembound.studies.laboratory.sample import sample_of
 
-        size = self.width, self.height
-        return sample_of(case, test, *size, ends=self.ends.value, damp=self.damp, rate=self.rate)
+        return sample_of(case, test, self)
 
     def options(self, *, anew: bool = False) -> Options:
         """Options of the sweep over seeds; raises CaseError for processes beside a scheduler."""

@@ -13,7 +13,7 @@ from dembound.cli.app import MORE, PICTURE, Cases, Output, PictureTitle, Setting
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import err, out, print_rows
 from dembound.cli.laboratory import LoadingOptions
-from dembound.cli.options import with_tables
+from dembound.cli.options import leave, with_tables
 from dembound.cli.sweep import FAILED, shown
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
@@ -131,18 +131,19 @@ def material(
         return
     if given := [*(["--seeds"] if seeds != SEEDS else []), *loading.given]:
         raise CaseError([f"{', '.join(given)}: for tests of samples, give --ucs or --tension"])
-    from dembound.disks.reports.micro_macro import describe_materials, material_rows, packing_line
+    from dembound.disks.reports.micro_macro import describe_materials, material_rows, materials_of, packing_line
     from dembound.disks.scene import build
 
-    found = describe_materials(build(load_disks(case, changes)))
+    scene = build(load_disks(case, changes))
+    found = describe_materials(scene)
     if as_json:
         for line in json.dumps(found, indent=2, allow_nan=False).splitlines():
             out.print(line, soft_wrap=True)
         return
-    for each in found:
-        if each["layer"]:
-            out.print(f"layer {each['layer']}")
-        out.print(packing_line(each))
+    for each, own in zip(found, materials_of(scene), strict=True):
+        if own.layer:
+            out.print(f"layer {own.layer}")
+        out.print(packing_line(own.ground))
         for title, rows in material_rows(each):
             out.print()
             print_rows(title, rows)
@@ -161,7 +162,6 @@ def packing(
     """Draw one side of the packing of each case, or one brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
-    from dembound.plot.style import save
 
     loaded = [load_disks(path, changes) for path in cases]
     if brick:
@@ -175,8 +175,7 @@ def packing(
                 for name, scene in scenes.items()
             }
         )
-    save(figure, output, title)
-    out.print(f"wrote {output}")
+    leave(figure, output, title)
 
 
 def _edge_of(scene: DiskScene, side: str) -> Edge:

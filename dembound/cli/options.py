@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import MISSING, dataclass, fields, is_dataclass
-from enum import StrEnum
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_type_hints
 
 import typer
 
-from dembound.cli.app import Side
+from dembound.cli.app import Side, writable
+from dembound.cli.console import out
+from dembound.studies.asked import Asked
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 def with_tables(command: Callable[..., None]) -> Callable[..., None]:
     """A command for typer in which the fields of every dataclass parameter are options.
 
-    The fields are annotated as options of typer. The command gets one object of the class.
+    The fields are annotated as options of typer, or as `Asked` where they are those of a study. The command gets one
+    object of the class.
     """
     hints = get_type_hints(command, include_extras=True)
     tables: dict[str, type] = {
@@ -50,7 +52,35 @@ def _options(table: type) -> Iterator[Parameter]:
     types = get_type_hints(table, include_extras=True)
     for field in fields(table):
         default = Parameter.empty if field.default is MISSING else field.default
-        yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=default, annotation=types[field.name])
+        annotation = types[field.name]
+        kind, option = get_args(annotation)
+        if isinstance(option, Asked):
+            annotation = Annotated[kind, _as_option(field.name, option, is_flag=kind is bool)]
+        yield Parameter(field.name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _as_option(name: str, asked: Asked, *, is_flag: bool) -> Any:
+    """The option of a field of a study; a flag has no opposite."""
+    names = (f"--{name.replace('_', '-')}",) if is_flag else ()
+    return typer.Option(*names, help=asked.help, metavar=asked.metavar, min=asked.least, rich_help_panel=asked.panel)
+
+
+def leave(figure: Figure, picture: Path, title: str | None = None, table: Path | None = None) -> None:
+    """Write a picture, and a table of its curves if one is requested, printing each file."""
+    from dembound.plot.style import save
+
+    save(figure, picture, title)
+    out.print(f"wrote {picture}")
+    if table is not None:
+        from dembound.plot.table import write_lines
+
+        write_lines(figure, table)
+        out.print(f"wrote {table}")
+
+
+def names_of(choices: Any) -> str:
+    """The values of a Literal type, with commas between."""
+    return ", ".join(get_args(choices))
 
 
 CALIBRATIONS = "calibrations"
@@ -60,30 +90,23 @@ SINGLE = ("--field", "--energy")
 """Options whose pictures show one run."""
 
 
-class Quantity(StrEnum):
-    """Quantities of the monitors."""
-
-    velocity = "velocity"
-    displacement = "displacement"
-    acceleration = "acceleration"
-    stress = "stress"
+Quantity = Literal["velocity", "displacement", "acceleration", "stress"]
+"""Quantities of the monitors."""
 
 
-class Component(StrEnum):
-    """Components of the monitors' motion."""
-
-    x = "x"
-    y = "y"
-    both = "both"
-    rotation = "rotation"
+Component = Literal["x", "y", "both", "rotation"]
+"""Components of the monitors' motion."""
 
 
+CurveTable = Annotated[
+    Path | None, typer.Option("--table", help="Table of the curves to write (CSV).", callback=writable)
+]
 QuantityOfMonitors = Annotated[
     Quantity | None,
     typer.Option(
         "--quantity",
         metavar="QUANTITY",
-        help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; stress of bars alone.",
+        help=f"Quantity of the monitors: {names_of(Quantity)}; by default velocity; stress of bars alone.",
     ),
 ]
 ComponentOfMotion = Annotated[
@@ -97,20 +120,20 @@ Monitors = Annotated[
 ]
 
 
-class SceneField(StrEnum):
-    """Fields of a whole scene; each kind of scene accepts some of them."""
-
-    velocity = "velocity"
-    displacement = "displacement"
-    stress = "stress"
-    damage = "damage"
-    stress_xx = "stress_xx"
-    stress_yy = "stress_yy"
-    stress_xy = "stress_xy"
-    forces = "forces"
-    peak = "peak"
-    unbalanced = "unbalanced"
-    layer = "layer"
+SceneField = Literal[
+    "velocity",
+    "displacement",
+    "stress",
+    "damage",
+    "stress_xx",
+    "stress_yy",
+    "stress_xy",
+    "forces",
+    "peak",
+    "unbalanced",
+    "layer",
+]
+"""Fields of a whole scene; each kind of scene accepts some of them."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +176,7 @@ class Plotted:
         if self.field is not None:
             from dembound.kinds import kind_of_record
 
-            return kind_of_record(files[0]).field_picture(files[0], self.field.value, self.snapshot)
+            return kind_of_record(files[0]).field_picture(files[0], self.field, self.snapshot)
         if self.energy:
             from dembound.plot.energy import plot_energy
 
@@ -168,7 +191,7 @@ class Plotted:
             return plot_boundary(files, side)
         from dembound.plot.side import plot_side
 
-        return plot_side(files, side, self.quantity.value)
+        return plot_side(files, side, self.quantity)
 
     def _histories(self, files: Sequence[Path]) -> Figure:
         """The histories of monitors."""
@@ -176,7 +199,7 @@ class Plotted:
 
         return plot_histories(
             files,
-            component=self.component.value if self.component else None,
-            quantity=(self.quantity or Quantity.velocity).value,
+            component=self.component,
+            quantity=self.quantity or "velocity",
             monitors=self.monitor or None,
         )

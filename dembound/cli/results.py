@@ -18,6 +18,8 @@ from dembound.cli.options import (
     Quantity,
     QuantityOfMonitors,
     SceneField,
+    leave,
+    names_of,
 )
 from dembound.errors import CaseError, RecordError
 from dembound.words import in_one_unit
@@ -46,7 +48,7 @@ def plot(
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help=f"Show the scene of one run instead, coloured by this: {', '.join(SceneField)}; forces: contacts as "
+            help=f"Show the scene of one run instead, coloured by this: {names_of(SceneField)}; forces: contacts as "
             "lines; of a bar over place and time.",
         ),
     ] = None,
@@ -68,8 +70,6 @@ def plot(
 
     With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
     from dembound.results.reader import understood
 
     files = [results_file(path) for path in results]
@@ -78,12 +78,7 @@ def plot(
     if problems := list(asked.problems(kind, len(files))):
         raise CaseError(problems)
     with understood(*files):
-        figure = asked.draw(files, kind)
-        save(figure, output, title)
-    out.print(f"wrote {output}")
-    if table is not None:
-        write_lines(figure, table)
-        out.print(f"wrote {table}")
+        leave(asked.draw(files, kind), output, title, table)
 
 
 def _common_kind(files: Sequence[Path]) -> str:
@@ -124,9 +119,9 @@ def compare_histories(
         Quantity,
         typer.Option(
             metavar="QUANTITY",
-            help=f"Quantity of the monitors: {', '.join(Quantity)}; the stress of bars alone.",
+            help=f"Quantity of the monitors: {names_of(Quantity)}; the stress of bars alone.",
         ),
-    ] = Quantity.velocity,
+    ] = "velocity",
     as_recorded: Annotated[
         bool, typer.Option("--as-recorded", help="Do not correct for waves that enter disks later or earlier.")
     ] = False,
@@ -152,8 +147,8 @@ def compare_histories(
     files = [results_file(path) for path in (reference, *results)]
     still: list[str] = []
     with understood(*files):
-        found = compare(files[0], files[1:], quantity.value, as_recorded, still.append)
-    at_ends = [value * SCALES[quantity.value] for line in found for value in (line.last, line.reference_last)]
+        found = compare(files[0], files[1:], quantity, as_recorded, still.append)
+    at_ends = [value * SCALES[quantity] for line in found for value in (line.last, line.reference_last)]
     ends, unit = in_one_unit(at_ends, found[0].unit.removeprefix("M"))
     has_across = any(line.across is not None for line in found)
     heads = ("RMS (%)", "largest (%)", *(["across (%)"] if has_across else []), f"end ({unit})", "reference")
@@ -161,12 +156,12 @@ def compare_histories(
     for k, line in enumerate(found):
         errors = (line.rms, line.peak, *([line.across] if has_across else []))
         rows.append((line.run, line.monitor, line.component, *map(_in_percent, errors), *ends[2 * k : 2 * k + 2]))
-    print_rows(f"{quantity.value} beside {reference}", rows, left=3)
+    print_rows(f"{quantity} beside {reference}", rows, left=3)
     for run, shift in {line.run: line.shift for line in found if line.shift}.items():
         how = "later" if shift > 0.0 else "earlier"
         out.print(f"{run}: waves enter {abs(shift):.2g} s {how} than in the reference; this shift is subtracted")
     if still:
-        out.print(f"left out, as the reference has no {quantity.value} there: {', '.join(dict.fromkeys(still))}")
+        out.print(f"left out, as the reference has no {quantity} there: {', '.join(dict.fromkeys(still))}")
     for line in found:
         if line.apart > 0.0:
             places = f"{line.place} in {line.run}, {line.reference_place} in the reference"

@@ -5,15 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, writable
 from dembound.cli.console import INTERVAL, err, out
-from dembound.cli.options import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors, SceneField
+from dembound.cli.options import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors, SceneField, leave
 from dembound.cli.results import results_file
 from dembound.errors import CaseError
 
@@ -88,7 +87,7 @@ def movie(
     with understood(file):
         shown = movie_of(
             file,
-            field=None if field is None else field.value,
+            field=field,
             exaggerate=exaggerate,
             monitors=(monitor or None) if histories else [],
             every=every,
@@ -117,14 +116,8 @@ def _counted(frames: int) -> Iterator[Callable[[int], None]]:
         yield count
 
 
-class Shown(StrEnum):
-    """What is shown of the monitors' signals."""
-
-    fourier = "fourier"
-    transfer = "transfer"
-    response = "response"
-    section = "section"
-    hodograph = "hodograph"
+Shown = Literal["fourier", "transfer", "response", "section", "hodograph"]
+"""What is shown of the monitors' signals."""
 
 
 @app.command("signals", rich_help_panel=MORE)
@@ -137,7 +130,7 @@ def signals(
             help="fourier: amplitude spectra; transfer: their ratios to --reference or to free-field twins; response: "
             "spectra with 5 % damping; section: histories at their distances; hodograph: motion in the plane.",
         ),
-    ] = Shown.fourier,
+    ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),
     title: PictureTitle = None,
     quantity: QuantityOfMonitors = None,
@@ -151,19 +144,13 @@ def signals(
 
     The table has the name of the picture, with the ending .csv.
     """
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
     from dembound.results.reader import understood
 
     _require_fitting(show, quantity, component, reference)
     files = [results_file(path) for path in results]
     with understood(*files):
         figure = _drawn(files, show, quantity, component, monitor, reference)
-        save(figure, output, title)
-    out.print(f"wrote {output}")
-    table = output.with_suffix(".csv")
-    write_lines(figure, table)
-    out.print(f"wrote {table}")
+        leave(figure, output, title, output.with_suffix(".csv"))
 
 
 def _require_fitting(
@@ -171,17 +158,17 @@ def _require_fitting(
 ) -> None:
     """Raise CaseError for options that have no effect on what is shown."""
     unused = {
-        "--quantity": (quantity, Shown.response, "a response spectrum is of the acceleration"),
-        "--component": (component, Shown.hodograph, "a hodograph shows x and y"),
+        "--quantity": (quantity, "response", "a response spectrum is of the acceleration"),
+        "--component": (component, "hodograph", "a hodograph shows x and y"),
     }
     problems = [
         f"{option}: is not allowed with --show {kind}, {why}"
         for option, (value, kind, why) in unused.items()
         if value is not None and show == kind
     ]
-    if reference is not None and show != Shown.transfer:
+    if reference is not None and show != "transfer":
         problems.append("--reference: goes with --show transfer")
-    if quantity == Quantity.stress and component is not None:
+    if quantity == "stress" and component is not None:
         problems.append("--component: is of motions; the stress of a bar is that along it")
     if problems:
         raise CaseError(problems)
@@ -199,12 +186,12 @@ def _drawn(
     from dembound.plot.histories import plot_hodograph, plot_section
     from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
 
-    names, of = monitor or None, quantity or Quantity.velocity
-    if show == Shown.response:
-        return plot_response(files, component.value if component else None, names)
-    if show == Shown.hodograph:
-        return plot_hodograph(files, of.value, names)
-    if show == Shown.transfer:
-        return plot_transfer(files, component.value if component else None, of.value, names, reference)
-    draw = plot_section if show == Shown.section else plot_fourier
-    return draw(files, component.value if component else None, of.value, names)
+    names, of = monitor or None, quantity or "velocity"
+    if show == "response":
+        return plot_response(files, component, names)
+    if show == "hodograph":
+        return plot_hodograph(files, of, names)
+    if show == "transfer":
+        return plot_transfer(files, component, of, names, reference)
+    draw = plot_section if show == "section" else plot_fourier
+    return draw(files, component, of, names)

@@ -10,9 +10,10 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Threads, app, load_case, prepare_computing, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Threads, app, load_case, prepare_computing
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import compact_table, err, out
+from dembound.cli.options import CurveTable, leave
 from dembound.errors import RunError
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def stability(
     ] = False,
     output: Annotated[Path, PICTURE] = Path("stability.png"),
     title: PictureTitle = None,
-    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
+    table: CurveTable = None,
     changes: Settings = None,
     threads: Threads = None,
 ) -> None:
@@ -46,8 +47,6 @@ def stability(
     Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
     """
     from dembound.plot.stability import plot_stability
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
     from dembound.studies.stability import measure
 
     prepare_computing(threads)
@@ -59,11 +58,7 @@ def stability(
         out.print(f"  {line}")
     short, long = _lines(found)
     figure = plot_stability(short, long, f"Noise in {loaded.name}: {words[0]}")
-    save(figure, output, title)
-    out.print(f"wrote {output}")
-    if table is not None:
-        write_lines(figure, table)
-        out.print(f"wrote {table}")
+    leave(figure, output, title, table)
     _fail_if_unstable(found)
 
 

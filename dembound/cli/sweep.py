@@ -5,9 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -22,10 +21,10 @@ from dembound.cli.app import (
     load_case,
     require_one_place,
 )
-from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, err, out, print_rows
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
+from dembound.studies.asked import Method
 from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
@@ -46,11 +45,8 @@ MOST_WARNINGS = 10
 """Largest number of distinct warnings of members that are printed."""
 
 
-class SweepAction(StrEnum):
-    """The action for every member."""
-
-    run = "run"
-    calibrate = "calibrate"
+SweepAction = Literal["run", "calibrate"]
+"""The action for every member."""
 
 
 @app.command("sweep")
@@ -67,7 +63,7 @@ def sweep(
         SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        CalibrationMethod | None,
+        Method | None,
         typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
     ] = None,
     processes: Annotated[
@@ -98,8 +94,8 @@ def sweep(
     loaded = load_case(case, changes, name)
     table = loaded.sweep
     options = Options(
-        action=action.value if action else table.action,
-        method=method.value if method else table.method,
+        action=action or table.action,
+        method=method or table.method,
         processes=processes or table.processes,
         scheduler=scheduler,
         anew=anew,

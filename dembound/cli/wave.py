@@ -16,7 +16,7 @@ from rich.text import Text
 
 from dembound.cli.app import MORE, app, png, writable
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.options import with_tables
+from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
@@ -35,27 +35,18 @@ HEADS = (
 
 
 class Kind(StrEnum):
-    """Kinds of waves."""
+    """Kinds of waves; an enumeration, as lists of options need one."""
 
     s = "s"
     p = "p"
 
 
-class Damping(StrEnum):
-    """How damped layers are taken."""
-
-    as_run = "as_run"
-    hysteretic = "hysteretic"
-    constant_q = "constant_q"
+Damping = Literal["as_run", "hysteretic", "constant_q"]
+"""How damped layers are taken."""
 
 
-class Baseline(StrEnum):
-    """What is removed as the baseline."""
-
-    mean = "mean"
-    linear = "linear"
-    zero_velocity = "zero-velocity"
-    none = "none"
+Baseline = Literal["mean", "linear", "zero-velocity", "none"]
+"""What is removed as the baseline."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +89,7 @@ class ProcessingOptions:
         return Processing(
             self.begin,
             self.end,
-            base.baseline if self.baseline is None else self.baseline.value,
+            self.baseline or base.baseline,
             base.taper if self.taper is None else self.taper,
             replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order),
             self.pga,
@@ -175,7 +166,7 @@ def wave(
             help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
             "equivalent-linear programs; or constant_q, causal.",
         ),
-    ] = Damping.as_run,
+    ] = "as_run",
     transfer: Annotated[
         Path | None,
         typer.Option(
@@ -198,8 +189,6 @@ def wave(
     By default the mean and what is below 0.1 Hz are removed and both ends are tapered; with --raw nothing is done.
     """
     from dembound.plot.record import plot_motions
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
     from dembound.records.formats import read_record
     from dembound.records.processing import processed, write_wave
 
@@ -220,7 +209,7 @@ def wave(
     motions = [processed(channel, processing.of(channel)) for channel in channels]
     if deconvolve is not None:
         motions = _below(deconvolve, motions, kinds, damping, transfer)
-    elif transfer is not None or damping != Damping.as_run:
+    elif transfer is not None or damping != "as_run":
         raise CaseError(["--transfer, --damping: go with --deconvolve"])
     for line in _lines(motions):
         out.print(f"  {line}")
@@ -240,11 +229,7 @@ def wave(
         out.print(f"wrote {path}")
     drawn = picture or target.with_suffix(".png")
     figure = plot_motions(motions, record.title or file.name)
-    save(figure, drawn)
-    out.print(f"wrote {drawn}")
-    if table is not None:
-        write_lines(figure, table)
-        out.print(f"wrote {table}")
+    leave(figure, drawn, table=table)
 
 
 def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
@@ -274,7 +259,7 @@ def _below(
         raise CaseError([f"--deconvolve: no file {path}"])
     case = ground_of_file(path)
     names: Sequence[Literal["s", "p"] | None] = [kind.value for kind in kinds] if kinds else [None] * len(motions)
-    found = below(case, motions, names, damping.value)
+    found = below(case, motions, names, damping)
     if transfer is not None:
         figure = plot_transfers(transfers(case, motions, names), f"Ground of {case.name}")
         save(figure, transfer)

@@ -1,4 +1,4 @@
-"""The settings of a continuum that the waves of a case need for a given error, and the RAM that it takes."""
+"""The settings of a continuum that the waves of a case need for a given error, and the numbers of its mesh."""
 
 from __future__ import annotations
 
@@ -285,43 +285,15 @@ class GridSizes:
         return cls(nodes, elements, absorbing, each[0].order)
 
     @property
-    def points(self) -> int:
-        """Number of points of an element."""
-        return (self.order + 1) ** 2
-
-    @property
-    def rim(self) -> int:
-        """Number of points on the edges of an element."""
-        return 4 * self.order
-
-
-def body_bytes(z: GridSizes) -> float:
-    """Bytes of a continuum in a scene, with the arrays of its law and of the same law without layers.
-
-    By node: positions twice, crossing lines, depths (64), number, area, slots and their nodes, two masses, mass and
-    inertia in the scene (72), where its entries begin (3). By element: its place (16), lines (16 a row of points),
-    nodes twice (16 a point); those of its rim, and their entries (8), and the forces on them under both laws (32). Of
-    layers: convolution variables, and coefficients (48 a row).
-    """
-    row = z.order + 1
-    element = 16 + 16 * row + 16 * z.points + 40 * z.rim
-    return 139.0 * z.nodes + element * z.elements + memories_bytes(z) + 48 * row * z.absorbing
-
-
-def memories_bytes(z: GridSizes) -> float:
-    """Bytes of the convolution variables of absorbing layers, eight numbers a point."""
-    return 64.0 * z.points * z.absorbing
-
-
-def header_bytes(z: GridSizes) -> float:
-    """Bytes of a mesh while it is written to a record: positions and flags (17), cells three times (96)."""
-    return 113.0 * z.nodes
-
-
-def snapshot_bytes(z: GridSizes) -> float:
-    """Bytes of a snapshot: motion, its change since the start (72), what is not yet in the file (72), and stress.
-
-    The stress needs displacements, derivatives, strains and stresses at the points of all elements (13 numbers), with
-    weights and their product.
-    """
-    return 144.0 * z.nodes + 8 * 15 * z.points * z.elements
+    def counts(self) -> dict[str, float]:
+        """Numbers of all things that take memory, see `motion.memory.BYTES`."""
+        row = self.order + 1
+        return {
+            "node": self.nodes,
+            "element": self.elements,
+            "row": row * self.elements,
+            "point": row**2 * self.elements,
+            "rim": 4 * self.order * self.elements,
+            "absorbing_row": row * self.absorbing,
+            "absorbing_point": row**2 * self.absorbing,
+        }

@@ -14,27 +14,28 @@ from dembound.disks.incident_wave import with_incident_waves
 from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
 from dembound.disks.material.packing_waves import front_of
+from dembound.disks.memory import storage_of
 from dembound.disks.pressure import follows, in_run
 from dembound.disks.reduced import reduced
 from dembound.disks.reports.facts import disk_facts
 from dembound.disks.reports.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh
 from dembound.disks.reports.summary import asked_stress, describe_static, disk_outcome, summarise_disks
-from dembound.disks.reports.warnings import disk_warnings, warnings_after_disks
+from dembound.disks.reports.warnings import disk_warnings
+from dembound.disks.reports.warnings_after import warnings_after_disks
 from dembound.disks.rest.settled import Settled, settling_keys
 from dembound.disks.rest.stage import require_stages, settle, stage_names
 from dembound.disks.rotating_pressure import Membranes
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.step_cost import storage_of
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
 from dembound.disks.watches import FarDisks, Turns
 from dembound.kernels.contacts import UPDATED
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Stage, Stages
+from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
-from dembound.motion.resources import Storage
 from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
@@ -121,7 +122,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def storage(self, scene: DiskScene) -> Storage:
         """Bytes on disk of the results of a scene, from the numbers of its disks and contacts."""
-        return storage_of(scene)
+        return storage_of(scene.case, scene.sizes)
 
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
         """All inputs that determine the result of the static stage, by key."""

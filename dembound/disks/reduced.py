@@ -10,7 +10,7 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Supports
 from dembound.disks.body import parts_of, with_half_contacts, with_layers
 from dembound.disks.contacts.layout import lay_out
-from dembound.disks.ram import run_bytes
+from dembound.disks.memory import run_bytes
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import fill_forces
 from dembound.disks.stepping.first_law import never_elastic_again, settled_refused

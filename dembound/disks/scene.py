@@ -18,9 +18,9 @@ from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.pressure import in_run
-from dembound.disks.ram import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.side_forces import side_forces
 from dembound.disks.sides import boundary_medium, medium_of_side, sides_of, tied_of
 from dembound.disks.stepping.fields import particle_stress

@@ -12,9 +12,9 @@ import numpy as np
 
 from dembound.casefile.model import Case, Schema
 from dembound.errors import RunError
+from dembound.motion.memory import Storage
 from dembound.motion.part import Cracks, System
 from dembound.motion.paths import Front, Source
-from dembound.motion.resources import Storage
 from dembound.motion.scene import Scene
 from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays

@@ -97,7 +97,11 @@ class Part(ABC):
         return None
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Fields of its nodes at displacements (3, n) other than their motion, by name: values (m, …) and unit."""
+        """Fields of its nodes at displacements (3, n) other than their motion, by name: values (m, …) and unit.
+
+        Those of all parts of one kind are the same. Every field is in the snapshots of ``run.h5``, and in the files for
+        ParaView, where values (m, 2) are vectors and (m, 3), as of a stress, the xx, yy, xy of symmetric tensors.
+        """
         return {}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from dembound.boundaries.description import FACTORS
 from dembound.plot.continuum import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
 from dembound.report.runs import ReportedRun
@@ -174,10 +175,6 @@ def sides(runs: Sequence[ReportedRun]) -> Table | None:
 def _each(side: Mapping[str, Any], key: str) -> str:
     """A number of a side, or those beside all of its layers, the lowest first."""
     return ", ".join(dict.fromkeys(f"{each[key]:.5g}" for each in side.get("layers", [side])))
-
-
-FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
-"""Factors of absorbing sides, and their letters."""
 
 
 def energies(runs: Sequence[ReportedRun]) -> Table | None:

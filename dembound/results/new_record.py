@@ -74,6 +74,9 @@ VELOCITY_UNIT = "m/s, m/s, rad/s"
 MOTION = ("displacement", "velocity")
 """Names of the datasets of every snapshot."""
 
+UNBALANCED = "unbalanced"
+"""Name of the dataset of the snapshot of a static stage that stalled."""
+
 NO_PARTICLE = -1
 """Number of the particle of a monitor in a continuum."""
 

@@ -23,6 +23,7 @@ from dembound.results.datasets import datasets_of, describe, extend, text, write
 from dembound.results.new_record import (
     DISPLACEMENT_UNIT,
     SIDE_HISTORY,
+    UNBALANCED,
     VELOCITY_UNIT,
     begin_record,
     header_of,
@@ -239,7 +240,7 @@ class Recorder:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""
         self.snapshot()
         self._append_cracks(stalled.cracks, self.run.time_step)
-        write(snapshot_of(self.file, -1), "unbalanced", stalled.unbalanced, "N")
+        write(snapshot_of(self.file, -1), UNBALANCED, stalled.unbalanced, "N")
 
     def _cut(self, counts: Mapping[str, int]) -> None:
         """Remove everything written after the state from which the run continues."""

@@ -13,6 +13,7 @@ from dembound.casefile.disks.outside import CONTINUUM
 from dembound.errors import CaseError, RecordError
 from dembound.files import content_of
 from dembound.motion.kind import Plan
+from dembound.motion.memory import total
 from dembound.motion.trackers import Run
 from dembound.results.histories import missing
 from dembound.results.new_record import NO_PARTICLE
@@ -22,9 +23,6 @@ from dembound.version import __version__
 
 if TYPE_CHECKING:
     import h5py
-
-FIELD_BYTES = 48
-"""Bytes of displacement and velocity of a node in a snapshot."""
 
 END = ("time", "displacement", "velocity")
 """What is written of the motion of a monitor at the end of a run."""
@@ -81,7 +79,7 @@ def end_in_words(summary: Mapping[str, Any]) -> list[str]:
 
 def _fields_left_out(planned: Plan) -> list[str]:
     """In words, the size of a large scene's snapshot, in a run that keeps none."""
-    size = FIELD_BYTES * planned.scene.count
+    size = total({"disk": planned.scene.count}, "snapshot")
     if planned.scene.case.output.snapshots > 0 or size < WORTH_SAYING:
         return []
     return [f"fields: no snapshot is kept, {size / 1e6:.3g} MB each"]

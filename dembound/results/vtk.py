@@ -19,6 +19,7 @@ from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
 from dembound.results.committed import new_file
 from dembound.results.datasets import CHUNK_BYTES, chunk_rows, extend
+from dembound.results.new_record import MOTION, UNBALANCED
 from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until
 
 if TYPE_CHECKING:
@@ -30,6 +31,12 @@ VERSION = (2, 0)
 
 CELL_TYPES = {"vertex": 1, "line": 3, "quad": 9}
 """VTK's numbers of the types of cells."""
+
+NAMES = {"coordination": "coordNumber"}
+"""Names in ParaView of fields that have others in a record."""
+
+PRECISION = {"f": np.float32, "i": np.int32, "b": np.uint8}
+"""Types of fields for ParaView, by the kind of those in a record."""
 
 PART_SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
 
@@ -221,8 +228,31 @@ def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:
 
 def shown(fields: Arrays) -> dict[str, np.ndarray]:
     """Fields by name in the precision for ParaView: single, whole numbers in 32 bits, truth values in 8."""
-    kinds = {"f": np.float32, "i": np.int32, "b": np.uint8}
-    return {name: values.astype(kinds[values.dtype.kind], copy=False) for name, values in fields.items()}
+    return {name: values.astype(PRECISION[values.dtype.kind], copy=False) for name, values in fields.items()}
+
+
+def passed_through(snapshot: Arrays, group: str = "") -> dict[str, np.ndarray]:
+    """Fields of a snapshot that are no motion, of all nodes of a group, for ParaView.
+
+    They are those that `Part.snapshot` of a part gives. One number for each node remains a number, two are a vector,
+    three are the xx, yy, xy of a symmetric tensor; what else a foreign record has is left out.
+    """
+    shapes: dict[tuple[int, ...], Callable[[np.ndarray], np.ndarray]] = {(): np.asarray, (2,): in_space, (3,): tensors}
+    count = len(snapshot[f"{group}displacement"])
+    own = {name.removeprefix(group): values for name, values in snapshot.items() if name.startswith(group)}
+    return {
+        NAMES.get(name, name): shapes[values.shape[1:]](values)
+        for name, values in own.items()
+        if "/" not in name and not name.endswith(MOTION) and name != UNBALANCED
+        if values.shape[:1] == (count,) and values.shape[1:] in shapes and values.dtype.kind in PRECISION
+    }
+
+
+def tensors(stress: np.ndarray) -> np.ndarray:
+    """Stresses (n, 3) xx, yy, xy as (n, 6), in VTK's order of symmetric tensors: xx, yy, zz, xy, yz, xz."""
+    tensors = np.zeros((len(stress), 6))
+    tensors[:, [0, 1, 3]] = stress
+    return tensors
 
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:

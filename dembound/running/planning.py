@@ -18,8 +18,8 @@ from dembound.motion.clock import Clock
 from dembound.motion.endings import Peak, Silence, monitored, peak_rule, silent_rule
 from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Beginning, Kind, Plan
+from dembound.motion.memory import in_words, total
 from dembound.motion.paths import first_arrivals
-from dembound.motion.resources import in_words
 from dembound.motion.scene import Scene
 from dembound.motion.simulation import Simulation
 from dembound.results.checkpoint import FOLDER as STAGES
@@ -215,9 +215,6 @@ def steps_between_entries(planned: Plan) -> int:
 ALWAYS = 1e6
 """Bytes of pictures, the summary, and the first chunks of datasets that grow."""
 
-MOTION = 8 + 24 + 24
-"""Bytes of a sample of a monitor: time, displacement and velocity; a side has a force in place of the velocity."""
-
 
 def results_bytes(planned: Plan) -> dict[str, float]:
     """Estimated bytes of the results of a run, by the key of the case that determines them.
@@ -227,18 +224,20 @@ def results_bytes(planned: Plan) -> dict[str, float]:
     """
     kind, scene, case = planned.kind, planned.scene, planned.scene.case
     whole, stepped = kind.storage(scene), kind.storage(planned.stepped)
+    copies = 2 if case.run.checkpoint > 0.0 else 0
     samples = planned.steps / max(1, round(case.output.history_interval / planned.time_step))
-    row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
-    entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
+    histories = total({"sample": samples * len(scene.monitors)}, "history", history_stress=scene.record_width > 6)
+    columns = len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges)
+    of_sides = planned.steps / steps_between_samples(planned) * len(scene.edges)
+    entries = planned.steps / steps_between_entries(planned) * (1 + copies)
     snapshots = min(case.output.snapshots, planned.regular_steps) * planned.steps / planned.regular_steps
     snapshots += bool(snapshots and kind.stage_names(scene))
-    copies = 2 if case.run.checkpoint > 0.0 else 0
     settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
     return {
         "output.snapshots": snapshots * whole.snapshot,
-        "output.history_interval": samples * row,
-        "output.side_interval": planned.steps / steps_between_samples(planned) * len(scene.edges) * (MOTION - 8),
-        "output.energy_interval": planned.steps / steps_between_entries(planned) * entry * (1 + copies),
+        "output.history_interval": histories,
+        "output.side_interval": total({"sample": of_sides}, "side"),
+        "output.energy_interval": total({"number": entries * columns}, "entry"),
         "run.checkpoint": (copies + settled) * stepped.checkpoint,
         "": ALWAYS + whole.header,
     }

@@ -6,7 +6,8 @@ from typing import Any, get_args
 from dembound.boundaries import Motion, axis_of_motion
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
-from dembound.studies.calibration import Calibration, Method, Report, calibrate
+from dembound.studies.asked import AS_USUAL, Calibrating
+from dembound.studies.calibration import Calibration, Report, calibrate
 from dembound.version import __version__
 
 
@@ -29,25 +30,14 @@ def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
     return found
 
 
-def calibrate_all(
-    case: DiskCase,
-    *,
-    method: Method = "impedance",
-    start: float | None = None,
-    tolerance: float = 1e-3,
-    full: bool = False,
-    report: Report | None = None,
-) -> list[Calibration]:
+def calibrate_all(case: DiskCase, how: Calibrating = AS_USUAL, *, report: Report | None = None) -> list[Calibration]:
     """Find all factors of a case, in the order of `factors_of`; parameters as for `calibration.calibrate`.
 
     Each is calibrated separately on the unchanged case, so the result does not depend on the order.
 
     Raises CaseError when nothing can be calibrated, RunError when a factor does not converge.
     """
-    return [
-        calibrate(case, side, motion=motion, method=method, start=start, tolerance=tolerance, full=full, report=report)
-        for side, motion in factors_of(case)
-    ]
+    return [calibrate(case, side, how, motion=motion, report=report) for side, motion in factors_of(case)]
 
 
 def changes_of(found: Sequence[Calibration]) -> dict[str, float]:

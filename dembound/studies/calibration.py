@@ -35,6 +35,7 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
+from dembound.studies.asked import AS_USUAL, Calibrating, Method
 from dembound.studies.strip import (
     AFTER,
     calibration_pulse,
@@ -48,8 +49,6 @@ from dembound.studies.strip import (
 from dembound.version import __version__
 from dembound.waves import Cosine
 from dembound.words import percent
-
-Method = Literal["impedance", "ratio", "homogenised"]
 
 MOST_PASSES = 40
 
@@ -149,25 +148,22 @@ Report = Callable[[Calibration], None]
 def calibrate(
     case: DiskCase,
     side: str,
+    how: Calibrating = AS_USUAL,
     *,
     motion: Motion | None = None,
-    method: Method = "impedance",
-    start: float | None = None,
-    tolerance: float = 1e-3,
-    full: bool = False,
     report: Report | None = None,
 ) -> Calibration:
     """Find β of one side for P (motion "p", along its normal) or S waves ("s", across it).
 
     Parameters
     ----------
-    motion : by default P, or S if the motion along the normal is held or only S waves run along it. method :
-    "impedance" solves the end's impedance relation for β0, checks it, and keeps "matched" where the side returns less
-        with it; "ratio" multiplies β by M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes
-        β0 = (c_eff/c)·H/ΣD, as "matched" does, from brick and side, without a run.
-    start : first β; by default the case's. If that is "matched", it is refined at least once.
-    tolerance : ends when |M_out/M_in − 1| is below it.
-    full : use the whole scene, with its own boundaries all around, instead of a strip.
+    motion : by default P, or S if the motion along the normal is held or only S waves run along it.
+    how.method : "impedance" solves the end's impedance relation for β0, checks it, and keeps "matched" where the side
+        returns less with it; "ratio" multiplies β by M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised"
+        takes β0 = (c_eff/c)·H/ΣD, as "matched" does, from brick and side, without a run.
+    how.start : first β; by default the case's. If that is "matched", it is refined at least once.
+    how.tolerance : ends when |M_out/M_in − 1| is below it.
+    how.full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
 
     Beside layers β multiplies ρc of each, and is found in the slowest of those at the side.
@@ -175,6 +171,7 @@ def calibrate(
     Raises CaseError when the side has no dashpots, keeps springs beside them, its motion is held, or its layers need
     different factors, RunError when β does not converge.
     """
+    method, start, tolerance, full = how.method, how.start, how.tolerance, how.full
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
     motion = calibrated_motion(case, side, motion)

@@ -132,10 +132,11 @@ def _names(parameter: Any, annotation: Any) -> str:
 
 def _kind(annotation: Any) -> str:
     """What an option of a Python type takes."""
-    while inner := [each for each in typing.get_args(annotation) if each is not type(None)]:
-        annotation = inner[0]
-    if issubclass(annotation, enum.Enum):
-        *others, last = (str(each.value) for each in annotation)
+    choices: tuple[Any, ...] = ()
+    while not choices and (inner := [each for each in typing.get_args(annotation) if each is not type(None)]):
+        choices, annotation = (tuple(inner), str) if typing.get_origin(annotation) is typing.Literal else ((), inner[0])
+    if choices or issubclass(annotation, enum.Enum):
+        *others, last = map(str, choices or annotation)
         return f"{', '.join(others)} or {last}"
     return {int: "N", float: "X", Path: "PATH"}.get(annotation, "TEXT")
 

@@ -4,7 +4,7 @@ from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
 from dembound.disks.reports.facts import disk_facts
 from dembound.errors import RunError
-from dembound.motion.resources import in_words
+from dembound.motion.memory import in_words
 from dembound.running import plan, warnings_before
 from dembound.words import with_unit
 

@@ -380,7 +380,7 @@ def test_a_packing_that_cannot_be_made_ends_with_4(dembound, written, monkeypatc
 
 
 def test_a_case_larger_than_the_machine_is_refused_with_both_numbers(dembound, written, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr("dembound.motion.resources.memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr("dembound.motion.memory.memory_here", lambda: Memory(8e9, 6e9))
     large = written("large", {"packing.size": [1e4, 1e4]})
     for name in ("check", "run", "packing"):
         answer = dembound(name, large)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from dembound.words import columns, in_one_unit, percent, with_unit
+from dembound.words import Quantity, columns, in_one_unit, numbers, percent, sentences, with_unit
 
 OWN = re.compile(r":[+]?\.[23]g\} %")
 """A share that is written with its own format, by which 0.998 would be "1e+02 %"."""
@@ -61,3 +61,18 @@ def test_no_message_has_a_format_of_its_own() -> None:
     package = Path(__file__).parents[2] / "dembound"
     found = [path.name for path in package.rglob("*.py") if OWN.search(path.read_text(encoding="utf-8"))]
     assert found == []
+
+
+def test_a_quantity_is_a_number_for_scripts_and_a_sentence() -> None:
+    found = [
+        Quantity("wave_speed", "m/s", 1234.5, "c = {}"),
+        Quantity("strength", "Pa", 8e6, "{}"),
+        Quantity("density", "kg/m³", 2500.0, "density {:g} kg/m³"),
+        Quantity("spacing", "m", 0.1),
+        Quantity("opening", "m", None, "opens by {}"),
+    ]
+
+    values = {"wave_speed": 1234.5, "strength": 8e6, "density": 2500.0, "spacing": 0.1, "opening": None}
+    assert numbers(found) == values
+    assert sentences(found, "strength", "spacing", "opening", "density") == "8 MPa, density 2500 kg/m³"
+    assert found[0].text == "c = 1230 m/s"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.scene import build
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 
 KINDS = {
@@ -55,7 +56,7 @@ def test_ratio_method_halves_the_error(bar, start):
     (input) is halved exactly, one more from the far side. That is so for any pulse: for this one, of 100 m, disks
     change β0 by (qa)² = 1e-3 and the end disks' mass by (πD/4cT)² = 2e-5, without changing the halving.
     """
-    found = calibrate(*bar(0.1), method="ratio", start=start)
+    found = calibrate(*bar(0.1), Calibrating(method="ratio", start=start))
     steps = np.diff(found.beta)
     assert np.all(steps > 0.0) if start < found.result else np.all(steps < 0.0)
     errors = np.array(found.ratio) - 1.0
@@ -65,7 +66,7 @@ def test_ratio_method_halves_the_error(bar, start):
 
 def test_strip_stands_for_the_whole_scene(bar, calibrated):
     """Effects of the parts outside of the strip arrive after the peak has left the side."""
-    strip, full = calibrated(0.2), calibrate(*bar(0.2), full=True)
+    strip, full = calibrated(0.2), calibrate(*bar(0.2), Calibrating(full=True))
     assert strip.particles < full.particles
     # both take β from their first pass, whose peak sees the same bricks and dashpots. The strip's pulse travels half
     # of the way: dispersion and scattering on the way are of order (qa)² = 2.5e-4

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.scene import build
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 
 PERIOD = 0.2
@@ -45,7 +46,7 @@ def compare(lab, motion: str, radius_ratio: float, seed: int, brick: float = 10.
         measured_speed=float(measured[0]),
         speed=speed,
         calibrated=calibrate(case, "right", motion=motion).result,
-        homogenised=calibrate(case, "right", motion=motion, method="homogenised").result,
+        homogenised=calibrate(case, "right", Calibrating(method="homogenised"), motion=motion).result,
     )
 
 

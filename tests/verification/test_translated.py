@@ -20,7 +20,7 @@ from translated import translated
 from dembound.accuracy.runner import measure
 from dembound.boundaries import SIDES, normal_axis
 from dembound.check import check
-from dembound.disks.ram import SceneSizes
+from dembound.disks.memory import SceneSizes
 from dembound.disks.rest.settled import Blocks
 from dembound.disks.scene import build
 from dembound.disks.sources import sources_of

@@ -18,7 +18,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.continuum.medium import Ground
 from dembound.continuum.sizing import GridSizes
 from dembound.disks import step_cost
-from dembound.disks.ram import stands_in_rows
+from dembound.disks.memory import stands_in_rows
 from dembound.disks.reduced import OneRow
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings.mesh import medium_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dembound.motion.state import Arrays
-from dembound.results.vtk import in_space, shown, vertices
+from dembound.results.vtk import in_space, passed_through, shown, vertices
 
 if TYPE_CHECKING:
     import meshio
@@ -77,10 +77,7 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
     }
     if "layer" in particles:
         data["layer"] = particles["layer"]
-    if "coordination" in snapshot:
-        data["coordNumber"] = snapshot["coordination"]
-    if "stress" in snapshot:
-        data["stress"] = tensors(snapshot["stress"])
+    data |= passed_through(snapshot)
     if "peak_velocity" in particles:
         data["peakVelocity"] = particles["peak_velocity"]
     return vertices(places_of(particles, snapshot), shown(data))
@@ -89,13 +86,6 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
 def places_of(particles: Arrays, snapshot: Arrays) -> np.ndarray:
     """Places (n, 3) m at which disks are drawn: their positions at the start plus their displacements."""
     return in_space(particles["position"] + snapshot["displacement"][:, :2])
-
-
-def tensors(stress: np.ndarray) -> np.ndarray:
-    """Stresses (n, 3) xx, yy, xy as (n, 6), in VTK's order of symmetric tensors: xx, yy, zz, xy, yz, xz."""
-    tensors = np.zeros((len(stress), 6))
-    tensors[:, [0, 1, 3]] = stress
-    return tensors
 
 
 def contact_mesh(particles: Arrays, snapshot: Arrays) -> meshio.Mesh:
@@ -125,7 +115,7 @@ def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:
         "linVelVec": in_space(velocity),
         "speed": np.hypot(*velocity.T),
         "displacement": in_space(displacement),
-        "stress": tensors(snapshot["continuum/stress"]),
+        **passed_through(snapshot, "continuum/"),
         "absorbs": columns["continuum/absorbs"],
     }
     if "continuum/total" in columns:

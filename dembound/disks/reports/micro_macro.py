@@ -12,7 +12,8 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import DIRECTIONS, phase_speeds
 from dembound.disks.material.targets import moduli_of
 from dembound.disks.scene import DiskScene
-from dembound.words import in_one_unit, percent, with_unit
+from dembound.packings.brick import Brick
+from dembound.words import Quantity, in_one_unit, numbers, percent, sentences, with_unit
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,15 @@ def materials_of(scene: DiskScene) -> Iterator[Own]:
     yield from (Own(*own) for own in each)
 
 
+def brick_quantities(brick: Brick) -> list[Quantity]:
+    """The numbers of a packing."""
+    return [
+        Quantity("mean_diameter", "m", brick.mean_diameter, "{}"),
+        Quantity("solid_fraction", "1", brick.solid_fraction, "solid fraction {:.3f}"),
+        Quantity("coordination", "1", brick.coordination, "{:.3g} contacts per disk"),
+    ]
+
+
 PLANES = {"strain": "solid in plane strain", "stress": "2D sample"}
 """Meanings of elastic constants, as for `material.plane`, in words."""
 
@@ -73,13 +83,7 @@ def _describe(own: Own) -> dict[str, Any]:
     return {
         "micro": {name: getattr(moduli, name) for name in names},
         "density": ground.density,
-        "packing": {
-            "disks": len(brick.radii),
-            "mean_diameter": brick.mean_diameter,
-            "solid_fraction": brick.solid_fraction,
-            "coordination": brick.coordination,
-            "pressure": ground.packed_pressure,
-        },
+        "packing": {"disks": len(brick.radii), **numbers(brick_quantities(brick)), "pressure": ground.packed_pressure},
         "moduli": {
             **{plane: _constants(tensor, plane, "isotropic") for plane in PLANES},
             "along": {axis: {plane: _constants(tensor, plane, axis) for plane in PLANES} for axis in ("x", "y")},
@@ -178,14 +182,10 @@ def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[st
     return tables
 
 
-def packing_line(found: dict[str, Any]) -> str:
-    """The packing of an entry of `describe_materials` in words."""
-    packing = found["packing"]
-    parts = [
-        f"{packing['disks']:,} disks of {with_unit(packing['mean_diameter'], 'm')}",
-        f"solid fraction {packing['solid_fraction']:.3f}",
-        f"{packing['coordination']:.3g} contacts per disk",
-    ]
-    if packing["pressure"] > 0.0:
-        parts.append(f"packed under {with_unit(packing['pressure'], 'Pa')}")
-    return ", ".join([*parts, f"density {with_unit(found['density'], 'kg/m³', DIGITS)}"])
+def packing_line(ground: PackedMaterial) -> str:
+    """The packing of a ground in words."""
+    packed = sentences(brick_quantities(ground.brick), "mean_diameter", "solid_fraction", "coordination")
+    parts = [f"{len(ground.brick.radii):,} disks of {packed}"]
+    if ground.packed_pressure > 0.0:
+        parts.append(f"packed under {with_unit(ground.packed_pressure, 'Pa')}")
+    return ", ".join([*parts, f"density {with_unit(ground.density, 'kg/m³', DIGITS)}"])

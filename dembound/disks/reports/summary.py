@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.material.layered import Joint, LayeredGround
+from dembound.disks.reports.ground import describe_layers, packing_quantities
 from dembound.disks.rest.settled import Settled, Uniformity
 from dembound.disks.scene import DiskScene
 from dembound.disks.sides import layers_beside, media_of
@@ -17,7 +17,7 @@ from dembound.disks.watches import FarDisks, Turns
 from dembound.motion.part import MANY
 from dembound.motion.trackers import Run
 from dembound.results.reader import laws_in_words
-from dembound.words import percent, with_unit
+from dembound.words import numbers, percent, with_unit
 
 SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not printed."""
@@ -117,7 +117,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "has_history": scene.has_history,
         "contacts": len(scene.assembly.pairs),
         "loose_disks_left_out": scene.assembly.loose,
-        "packing": describe_packing(scene),
+        "packing": numbers(packing_quantities(scene)),
         "layers": describe_layers(scene),
         "load_factor": _describe_load_factor(run),
         "forces_at_rest": _describe_forces_at_rest(run),
@@ -193,74 +193,6 @@ def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
         "beyond": found.beyond,
         "near_holes": None if np.isnan(found.near_holes) else found.near_holes,
     }
-
-
-def describe_packing(scene: DiskScene) -> dict[str, Any]:
-    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held).
-
-    In layers they are those of the slowest.
-    """
-    ground, brick = scene.ground, scene.ground.brick
-    tensor = ground.material_tensor
-    p_speed, s_speed = ground.wave_speeds(0)
-    return {
-        "disks_per_brick": len(brick.radii),
-        "mean_diameter": brick.mean_diameter,
-        "solid_fraction": brick.solid_fraction,
-        "coordination": brick.coordination,
-        "residual_ratio": brick.residual_ratio,
-        "stress": (brick.stress * ground.moduli.emod).tolist(),
-        "emod": ground.moduli.emod,
-        "pb_emod": ground.moduli.pb_emod,
-        "kratio": ground.moduli.kratio,
-        "pb_kratio": ground.moduli.pb_kratio,
-        "C11": tensor[0, 0],
-        "C22": tensor[1, 1],
-        "C12": tensor[0, 1],
-        "C66": tensor[3, 3],
-        "p_wave_speed": None if np.isnan(p_speed) else p_speed,
-        "s_wave_speed": None if np.isnan(s_speed) else s_speed,
-    }
-
-
-def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
-    """The layers from the surface down: heights (m), density, moduli (Pa), and speeds along y (m/s, null where held).
-
-    The lowest ends with the ground's box, or where it begins if that is below.
-
-    `joint` : of the joint below, null without one: the effective heights of mass, and of stiffness for P and S waves,
-    before they are corrected, in m above the plane; null where the layers do not differ.
-    """
-    ground, case = scene.ground, scene.case
-    if not isinstance(ground, LayeredGround):
-        return []
-    heights = (case.box[3], *case.joints, min(case.box[1], case.joints[-1]))
-    joints = [*reversed(ground.joints), None]
-    found = []
-    for number, (name, material, joint) in enumerate(zip(case.layer_names, ground.materials, joints, strict=True)):
-        p_speed, s_speed = (None if np.isnan(speed) else speed for speed in material.wave_speeds(1))
-        found.append(
-            {
-                "name": name,
-                "top": heights[number],
-                "bottom": heights[number + 1],
-                "density": material.density,
-                "emod": material.moduli.emod,
-                "pb_emod": material.moduli.pb_emod,
-                "kratio": material.moduli.kratio,
-                "pb_kratio": material.moduli.pb_kratio,
-                "p_wave_speed": p_speed,
-                "s_wave_speed": s_speed,
-                "joint": None if joint is None else _describe_joint(joint),
-            }
-        )
-    return found
-
-
-def _describe_joint(joint: Joint) -> dict[str, float | None]:
-    """The effective heights of a joint, see `describe_layers`."""
-    heights = {"mass": joint.mass, "p": joint.p, "s": joint.s}
-    return {name: None if np.isnan(height) else height for name, height in heights.items()}
 
 
 def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:

@@ -1,34 +1,23 @@
-"""Warnings about probable mistakes in a case of disks, before and after the run."""
+"""Warnings about probable mistakes in a case of disks, before the run."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from dembound.boundaries import SIDES, normal_axis
-from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import MODULI_KEYS, with_history
+from dembound.casefile.disks.material import MODULI_KEYS
 from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
-from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.reports.continuum_facts import continuum_warnings
 from dembound.disks.reports.intact import intact_warnings
 from dembound.disks.reports.load_warnings import load_warnings
 from dembound.disks.reports.micro_macro import Own, materials_of
 from dembound.disks.reports.side_warnings import side_warnings, spring_warnings
-from dembound.disks.reports.summary import SHOWN, block_in_words
 from dembound.disks.reports.wave_warnings import wave_warnings
 from dembound.disks.scene import DiskScene
-from dembound.disks.stepping.load_factor import load_factor_in_words
-from dembound.disks.stepping.near_ties import near_tie_warnings
-from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
-from dembound.disks.watches import far_warnings, turn_warnings
 from dembound.meanings import MEANINGS
-from dembound.results.reader import cracks_until, open_record
-from dembound.results.warnings import energy_warnings, still_moving
 from dembound.words import percent, with_unit
 
 LARGEST_PULL = 3.5
@@ -44,9 +33,6 @@ UNLIKE_STRENGTHS = 100.0
 SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
-UNEVEN = 0.01
-"""Deviation of a block, over the largest requested principal stress, up to which there is no warning."""
-
 GIVES_WAY = 6.0
 """By how much the wall of a hole moves too far in a body that only forces hold, over (hole / body)² of their widths.
 
@@ -55,12 +41,6 @@ The second harmonic of holes in the middle: 7.6, 6.4, 5.7, 5.2 for bodies 3, 4, 
 
 TOO_FAR = 0.05
 """Share by which the wall of a hole may move too far without a warning."""
-
-AT_REST = 1e-14
-"""Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
-
-Settled strains of 1e-6 to 1e-2 are known to 1e-16 of themselves; slopes under their weight move by 1e-17.
-"""
 
 
 def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
@@ -303,73 +283,3 @@ def _axes_in_use(scene: DiskScene) -> list[int]:
         return [1]
     vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
     return [0, 1] if vertical or scene.case.load or scene.case.incident else [0]
-
-
-def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-    """Warnings from the summary and record of a run of disks, one line each."""
-    with open_record(record) as file:
-        cracks = cracks_until(file, np.inf)
-        at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
-        moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        return [
-            *_uneven(scene.case, summary["static"]),
-            *moving,
-            *_not_elastic(summary.get("load_factor")),
-            *near_tie_warnings(scene, summary, cracks),
-            *lasting_force_warnings(summary.get("forces_at_rest")),
-            *reach_warnings(summary.get("forces_at_rest")),
-            *far_warnings(summary.get("far")),
-            *turn_warnings(summary.get("turns"), scene.case.material.law, has_history=scene.has_history),
-            *energy_warnings(scene, summary["energy"], file),
-        ]
-
-
-def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
-    """A warning about blocks that deviate from the target stress; beside holes and under steady loads they should.
-
-    static : of the summary.
-    """
-    stages = [] if static is None else [static, static["before"]]
-    steady = any(load.wave is None for load in case.load)
-    for found in (each["uniformity"] for each in stages if each is not None):
-        if found is None or steady or found["near_holes"] is not None or found["deviation"] <= UNEVEN:
-            continue
-        x, y = found["place"]
-        yield (
-            f"static.stress: in {block_in_words(found)} the stress differs by up to {percent(found['deviation'])} "
-            f"of the largest principal stress requested, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
-        )
-
-
-def _whence(found: Mapping[str, Any]) -> str:
-    """The reason why blocks deviate, in words."""
-    if found["packing"] < SHOWN:
-        return "sides that are held, contacts that slid or opened, or too large a static.ratio"
-    return (
-        f"the endless elastic packing has {percent(found['packing'])} by itself, less in larger blocks, "
-        f"and the body differs by {percent(found['beyond'])} from that packing"
-    )
-
-
-def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
-    """A warning about a load factor below 1: the motion is not that of the material."""
-    if found is not None and found["factor"] is not None and found["factor"] < 1.0:
-        law = f"take law = {with_history()}, or smaller waves"
-        yield f'material.law: is "elastic", but {load_factor_in_words(found)}; {law}'
-
-
-def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
-    """Number (n,) of the piece of each particle; pieces are connected by pairs of the start that have not broken.
-
-    broken (k, 2) particles; without any, the body is in one piece, as built.
-    """
-    if len(broken) == 0:
-        return np.zeros(scene.disk_count, dtype=np.int8)
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    pairs = scene.assembly.pairs
-    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.disk_count, 1] for each in (pairs, broken))
-    pairs = pairs[~np.isin(listed, gone)]
-    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.disk_count, scene.disk_count))
-    return connected_components(joined, directed=False)[1]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, cast, get_args
+from typing import Any, cast, get_args
 
 import tomli_w
 
@@ -21,9 +21,9 @@ from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.packings.base import DensePacking, Packing
 from dembound.results.recording import TestName
+from dembound.studies.asked import USUAL_LOADING, Ends, Loading
 from dembound.words import with_unit
 
-Ends = Literal["smooth", "grips"]
 """How platens hold the ends: along their normal only, or in all directions."""
 
 LAW = "linearpbond"
@@ -85,8 +85,8 @@ class Sample:
     test: TestName
     width: float
     height: float
-    ends: Ends = "smooth"
-    damp: float = 0.7
+    ends: Ends = Loading.ends
+    damp: float = Loading.damp
     given_rate: float | None = None
 
     @property
@@ -239,14 +239,9 @@ class Sample:
 def sample_of(
     case: DiskCase,
     test: str,
-    width: float | None = None,
-    height: float | None = None,
-    *,
-    ends: Ends = "smooth",
-    damp: float = 0.7,
-    rate: float | None = None,
+    loading: Loading = USUAL_LOADING,
 ) -> Sample:
-    """A sample of the material of a case; test : a `TestName`. width, height : m, by default those of the case's disks.
+    """A sample of the material of a case; test : a `TestName`. loading : with the size of the case's disks by default.
 
     A given width makes it twice as high; a Brazilian sample is round, of this width. Lengths of lattices are rounded to
     whole cells.
@@ -254,6 +249,7 @@ def sample_of(
     Raises CaseError for a material without strength or moduli of its own, a case of too many disks without a width, and
     invalid numbers.
     """
+    width, height, ends, damp, rate = loading.width, loading.height, loading.ends, loading.damp, loading.rate
     for option, word, words in (("test", test, get_args(TestName)), ("--ends", ends, get_args(Ends))):
         if word not in words:
             raise CaseError([f"{option}: is {word}, must be one of {', '.join(words)}"])

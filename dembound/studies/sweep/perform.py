@@ -27,6 +27,7 @@ from dembound.results.folder import Folder
 from dembound.results.summary import read_summary
 from dembound.results.text_files import read_json, write_json
 from dembound.running import Progress, Shared, resume_case, run_case
+from dembound.studies.asked import Calibrating
 from dembound.studies.sweep.members import values_of_calibration, values_of_run
 
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
@@ -213,7 +214,8 @@ def _calibrate(task: Task) -> tuple[dict[str, float], list[str]]:
 
     case = as_kind(_case_of(task), DiskCase, "is the case of a bar; β of disks is calibrated")
     begun = Begun(task.begun)
-    return values_of_calibration(calibrate_all(case, method=task.method, report=lambda _: begun.make())), []
+    found = calibrate_all(case, Calibrating(method=task.method), report=lambda _: begun.make())
+    return values_of_calibration(found), []
 
 
 def _case_of(task: Task) -> Case:

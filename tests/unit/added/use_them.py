@@ -17,6 +17,7 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 from dembound.studies.dispersion import lattices_of, measure
 
@@ -123,7 +124,7 @@ sent = case(GROUND, **strip, **{"boundary.left.beta_s": 0.9})
 hexagons = {"packing.pattern": "hexagonal", "material.law": "elastic"}
 wide = {"packing.size": [5.0, 5.19615]}
 half = {"type": "viscous", "half_mass": True}
-full = calibrate(sent, "right", full=True)
+full = calibrate(sent, "right", Calibrating(full=True))
 lattices = lattices_of(case(BAR))
 wavenumbers = lattices[0].shortest * np.array([0.2, 0.5, 0.9])
 bar = plan(case(BAR)).scene

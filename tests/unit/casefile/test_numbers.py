@@ -10,7 +10,7 @@ from dembound.casefile.disks.outside import MOST_ELEMENTS
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.machine import Memory
-from dembound.motion import resources
+from dembound.motion import memory
 from dembound.running import plan
 from dembound.waves.wave import LATEST
 
@@ -33,7 +33,7 @@ def test_a_count_beyond_all_need_is_one_line() -> None:
 
 
 def test_elements_for_which_there_is_no_memory_are_refused_before_they_are_made(monkeypatch) -> None:
-    monkeypatch.setattr(resources, "memory_here", lambda: Memory(8e9, 8e9))
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 8e9))
     case = small(SURROUNDED | {"outside": {"element": 3.0, "order": 3, "margin": 1000, "layers": 1000}})
     # (4 + 2·2000)(2 + 2000) elements of nine nodes
     with pytest.raises(CaseError, match=r"outside: 72 disks and 7.2\de\+07 nodes of the continuum .* of memory"):

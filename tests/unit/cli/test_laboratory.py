@@ -11,6 +11,7 @@ from small_cases import PUSHED, small
 from dembound.cli.laboratory import _under_way
 from dembound.kinds import loads
 from dembound.running import run_case
+from dembound.studies.asked import Loading
 from dembound.studies.laboratory import strengths, study
 from dembound.studies.laboratory.sample import RISE, sample_of
 from dembound.studies.sweep.perform import MEMBERS, Outcome
@@ -147,7 +148,7 @@ def test_options_of_strengths_and_of_tables_do_not_mix(dembound) -> None:
 
 
 def test_strains_of_samples_under_way_are_shown(tmp_path) -> None:
-    sample = sample_of(small(LATTICE), "ucs", rate=2.0)
+    sample = sample_of(small(LATTICE), "ucs", Loading(rate=2.0))
     one, two = (0.5 * RISE * sample.travel_time + strain / 2.0 for strain in (0.001, 0.002))
     for key, time in (("a", one), ("b", two), ("c", "")):
         (tmp_path / f"begun-1f-{key}").write_text(str(time), encoding="utf-8")  # the last one is being written

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.disks.reports.warnings import warnings_after_disks
+from dembound.disks.reports.warnings_after import warnings_after_disks
 from dembound.disks.scene import build
 from dembound.motion.energy import Entry
 

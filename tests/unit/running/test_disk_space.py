@@ -7,7 +7,7 @@ import pytest
 
 from dembound import check
 from dembound.kinds import with_changes
-from dembound.motion.resources import in_words
+from dembound.motion.memory import in_words
 from dembound.running import Progress, job, plan, planning, resume_case, run_case, warnings_before
 from dembound.running.planning import ALWAYS, results_bytes, space_warnings
 

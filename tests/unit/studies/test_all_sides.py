@@ -4,6 +4,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.studies.all_sides import calibrate_all, changes_of, factors_of, summary_of
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 
 DASHPOTS = {
@@ -24,14 +25,14 @@ def test_sides_with_dashpots_have_a_factor_for_each_wave_that_can_move_them(bar)
         factors_of(bar(grip))
 
 
-@pytest.mark.parametrize("options", [{"method": "homogenised"}, {"tolerance": 1e-2}])
-def test_each_factor_is_the_one_that_is_found_alone(bar, options: dict) -> None:
+@pytest.mark.parametrize("how", [Calibrating(method="homogenised"), Calibrating(tolerance=1e-2)])
+def test_each_factor_is_the_one_that_is_found_alone(bar, how: Calibrating) -> None:
     case = bar(DASHPOTS | {"boundary.right.beta_p": 0.7})
     passes = []
-    found = calibrate_all(case, report=lambda each: passes.append((each.side, each.motion)), **options)
+    found = calibrate_all(case, how, report=lambda each: passes.append((each.side, each.motion)))
 
     assert [(each.side, each.motion) for each in found] == factors_of(case)
-    alone = {(side, motion): calibrate(case, side, motion=motion, **options) for side, motion in factors_of(case)}
+    alone = {(side, motion): calibrate(case, side, how, motion=motion) for side, motion in factors_of(case)}
     assert changes_of(found) == {f"boundary.{s}.beta_{m}": each.result for (s, m), each in alone.items()}
     assert len(passes) == sum(len(each.beta) for each in found)
 

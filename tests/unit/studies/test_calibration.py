@@ -9,6 +9,7 @@ from dembound.boundaries.viscous import Viscous
 from dembound.errors import CaseError, RunError
 from dembound.results.reader import text_of
 from dembound.studies import calibration as module
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate, known
 
 LENGTH = 1000.0 * 0.05
@@ -32,7 +33,7 @@ def long_bar(bar):
 @pytest.mark.parametrize(("side", "answer"), [("right", 2.0 / 1.5), ("left", 2.0 * 0.5 / 1.5)])
 def test_the_impedance_relation_finds_the_factor_in_one_step(long_bar, tmp_path, side: str, answer: float) -> None:
     seen: list[int] = []
-    found = calibrate(long_bar(), side, start=0.5, report=lambda so_far: seen.append(len(so_far.beta)))
+    found = calibrate(long_bar(), side, Calibrating(start=0.5), report=lambda so_far: seen.append(len(so_far.beta)))
 
     # equal disks: β0 = 1 but for the end mass, whose |R| = qa/4 = 2π·0.5/50/4 shifts phases, not peaks: of order R²
     # = 2e-4. A step of T/140 misses the crest by up to (π/280)² = 1e-4.
@@ -65,7 +66,8 @@ def test_a_factor_has_the_digits_that_are_known(beta, ratio, digits) -> None:
 
 @pytest.mark.parametrize("full", [False, True])
 def test_of_identical_rows_one_is_stepped(long_bar, full) -> None:
-    found, expected = (calibrate(long_bar({"reduce.rows": rows}), "right", full=full) for rows in (True, False))
+    how = Calibrating(full=full)
+    found, expected = (calibrate(long_bar({"reduce.rows": rows}), "right", how) for rows in (True, False))
 
     (saved,) = set(found.shortened) - set(expected.shortened)
     assert saved.startswith("rows: 2 identical rows are stepped as one")
@@ -82,7 +84,7 @@ def test_other_sides_keep_their_supports_but_not_their_waves(long_bar) -> None:
         (driven, {"type": "viscous", **absorbing}),
     ):
         cases = [long_bar({"boundary.top": top, "motion.held": ["y", "rotation"]}) for top in sides]
-        own, at_rest = (calibrate(case, "right", full=True, tolerance=2.0) for case in cases)
+        own, at_rest = (calibrate(case, "right", Calibrating(full=True, tolerance=2.0)) for case in cases)
         assert own.outgoing == at_rest.outgoing
 
 
@@ -99,7 +101,8 @@ def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar
     }
     plain = {"material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.3}}
     for full in (False, True):
-        found, expected = (calibrate(long_bar(changes), "right", start=0.5, full=full) for changes in (busy, plain))
+        how = Calibrating(start=0.5, full=full)
+        found, expected = (calibrate(long_bar(changes), "right", how) for changes in (busy, plain))
         assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
         assert found.shortened == [*expected.shortened, "no holes", "no static stage", "no loads", "the elastic law"]
 
@@ -113,7 +116,7 @@ def test_s_waves_are_taken_where_p_motion_is_held_or_only_s_waves_come(long_bar)
 
 
 def test_the_homogenised_factor_needs_no_run(long_bar) -> None:
-    found = calibrate(long_bar(), "right", method="homogenised")
+    found = calibrate(long_bar(), "right", Calibrating(method="homogenised"))
     # (c_eff/c)·H/ΣD of touching equal disks; a solve with one unknown
     assert found.result == pytest.approx(1.0, rel=1e-12)
     assert (found.beta, found.outgoing, found.steps) == ([], [], 0)
@@ -121,16 +124,18 @@ def test_the_homogenised_factor_needs_no_run(long_bar) -> None:
     moduli = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9, "s_wave_speed": 250.0}
     case = long_bar({"material": moduli, "motion.held": ["x"], "boundary.left": SHEAR})
     # c_s = 500 m/s where the dashpots assume 250; β0 = 2
-    assert calibrate(case, "right", motion="s", method="homogenised").result == pytest.approx(2.0, rel=1e-12)
+    assert calibrate(case, "right", Calibrating(method="homogenised"), motion="s").result == pytest.approx(
+        2.0, rel=1e-12
+    )
 
 
 def test_a_strip_is_as_long_as_an_echo_needs_and_one_brick_wide_where_sides_matter(bar, long_bar) -> None:
-    found = calibrate(long_bar(), "right", tolerance=1.0)
+    found = calibrate(long_bar(), "right", Calibrating(tolerance=1.0))
     # 17.5 m of 40 m, both rows: y is held, so the free sides do nothing
     assert found.particles == 2 * int(0.35 * LENGTH / 0.5)
     assert "a strip of 17.5 m, the scene has 40 m" in found.shortened
 
-    longer = calibrate(bar({"wave.pulse.period": 0.05}), "right", tolerance=1.0)
+    longer = calibrate(bar({"wave.pulse.period": 0.05}), "right", Calibrating(tolerance=1.0))
     assert longer.particles == 2 * 35
     assert "a strip of 17.5 m, the scene has 10 m" in longer.shortened
 
@@ -138,11 +143,11 @@ def test_a_strip_is_as_long_as_an_echo_needs_and_one_brick_wide_where_sides_matt
     # the length of these, at the 500 m/s of touching disks, whose rotations take part
     shear = {"boundary.left": SHEAR}
     for changes, particles in (({}, 2 * 35), (shear, 18), ({"boundary.top": {"type": "fixed"}}, 35)):
-        found = calibrate(long_bar({"motion.held": [], **changes}), "right", tolerance=1.0)
+        found = calibrate(long_bar({"motion.held": [], **changes}), "right", Calibrating(tolerance=1.0))
         assert found.particles == particles
         assert ("one brick wide and periodic sideways" in found.shortened) == (particles < 70)
 
-    whole = calibrate(long_bar(), "right", start=0.5, full=True)
+    whole = calibrate(long_bar(), "right", Calibrating(start=0.5, full=True))
     assert whole.particles == 160
     assert not any("strip" in sentence for sentence in whole.shortened)
     assert whole.result == pytest.approx(1.0, abs=2e-3)
@@ -155,8 +160,8 @@ def test_factors_are_those_of_the_scenes_own_side_where_the_strip_has_other_disk
         long_bar({"packing": packing, "motion.held": [], "boundary.top": side, "boundary.bottom": side})
         for side in ({"type": "fixed"}, {"type": "periodic"})
     )
-    found, other = (calibrate(case, "right", tolerance=1.0) for case in (own, tiled))
-    matched = calibrate(own, "right", method="homogenised").result
+    found, other = (calibrate(case, "right", Calibrating(tolerance=1.0)) for case in (own, tiled))
+    matched = calibrate(own, "right", Calibrating(method="homogenised")).result
     assert found.beta[0] == pytest.approx(matched, rel=1e-4)  # which has five digits
     assert abs(other.beta[0] / found.beta[0] - 1.0) > 0.01
     assert found.outgoing[0] == pytest.approx(other.outgoing[0], rel=1e-12)
@@ -166,16 +171,16 @@ def test_factors_are_those_of_the_scenes_own_side_where_the_strip_has_other_disk
 def test_the_matched_factor_is_kept_where_it_returns_less(long_bar, monkeypatch, shares, kept: bool) -> None:
     asked = []
     monkeypatch.setattr(module, "returned", lambda *given: asked.append(given[-1]) or list(shares))
-    found = calibrate(long_bar(), "right", start=0.5, tolerance=1e-4)
+    found = calibrate(long_bar(), "right", Calibrating(start=0.5, tolerance=1e-4))
     ((own, matched),) = asked
-    assert matched == calibrate(long_bar(), "right", method="homogenised").result
+    assert matched == calibrate(long_bar(), "right", Calibrating(method="homogenised")).result
     assert own == known(found.beta[1], found.ratio[1]) != matched
     assert found.result == (matched if kept else own)
     assert found.beta[-1] == pytest.approx(found.result, abs=1e-4)
     words = f"returned: {100 * shares[0]:g} % with {own:g}, {100 * shares[1]:g} % with the matched {matched:g}"
     assert found.compared == words + (", which is kept" if kept else "")
     # Z's iteration is that of the paper
-    assert calibrate(long_bar(), "right", method="ratio", tolerance=1e-4).compared == ""
+    assert calibrate(long_bar(), "right", Calibrating(method="ratio", tolerance=1e-4)).compared == ""
     assert len(asked) == 1
 
 
@@ -198,7 +203,7 @@ def test_sides_are_calibrated_by_their_dashpots_from_the_cases_own_factor(
     dashpots = {"beta_p": 0.7} | ({"wave_p": "pulse"} if side == "left" else {})
     for full in (False, True):
         found, expected = (
-            calibrate(long_bar({f"boundary.{side}": each | dashpots}), side, full=full)
+            calibrate(long_bar({f"boundary.{side}": each | dashpots}), side, Calibrating(full=full))
             for each in (table, {"type": plain})
         )
         assert found.beta[0] == 0.7
@@ -213,7 +218,7 @@ def test_half_masses_and_the_strength_of_the_cases_own_wave_stay(long_bar) -> No
 
     step = {"wave": {"pulse": {"type": "constant", "amplitude": 0.5}}}  # without a crest
     for changes, incident in (({"wave.pulse.amplitude": -0.25}, 0.25), (step, 1.0)):
-        assert calibrate(long_bar(changes), "right", tolerance=1.0).incident == incident
+        assert calibrate(long_bar(changes), "right", Calibrating(tolerance=1.0)).incident == incident
 
 
 class Sprung(Viscous):
@@ -227,11 +232,11 @@ class Sprung(Viscous):
 @pytest.mark.parametrize(
     ("side", "options", "said"),
     [
-        ("right", {"tolerance": float("nan")}, "--tolerance"),
-        ("right", {"tolerance": 0.0}, "--tolerance"),
-        ("right", {"start": float("nan")}, "to start a calibration"),
-        ("right", {"start": float("inf")}, "to start a calibration"),
-        ("right", {"start": 0.0}, r"boundary\.right\.beta_p: is 0, must be above 0"),
+        ("right", {"how": Calibrating(tolerance=float("nan"))}, "--tolerance"),
+        ("right", {"how": Calibrating(tolerance=0.0)}, "--tolerance"),
+        ("right", {"how": Calibrating(start=float("nan"))}, "to start a calibration"),
+        ("right", {"how": Calibrating(start=float("inf"))}, "to start a calibration"),
+        ("right", {"how": Calibrating(start=0.0)}, r"boundary\.right\.beta_p: is 0, must be above 0"),
         ("right", {"motion": "s"}, r"motion\.held: holds y, the motion of S waves at the side right"),
         ("top", {}, r"boundary\.top: is free, .*here: left, right"),
         ("bottom", {}, r"boundary\.bottom: is fixed, .*here: left, right"),
@@ -244,10 +249,10 @@ def test_what_cannot_be_calibrated_is_refused(long_bar, side: str, options: dict
 
 def test_scenes_too_short_springs_that_stay_and_too_many_passes_are_refused(bar, long_bar, monkeypatch) -> None:
     with pytest.raises(CaseError, match=r"--full: the scene is 10 m long, echoes need 17\.5 m"):
-        calibrate(bar({"wave.pulse.period": 0.05}), "right", full=True)
+        calibrate(bar({"wave.pulse.period": 0.05}), "right", Calibrating(full=True))
     monkeypatch.setattr(module, "MOST_PASSES", 2)
     with pytest.raises(RunError, match=r"right did not converge in 2 passes: M_out/M_in = 1\.\d+ at beta_p = 0\.\d+"):
-        calibrate(long_bar(), "right", start=0.5, method="ratio")
+        calibrate(long_bar(), "right", Calibrating(start=0.5, method="ratio"))
     case = long_bar()
     sprung = replace(case, boundary={**case.boundary, "right": Sprung(type="viscous")})
     with pytest.raises(CaseError, match=r"boundary\.right\.type: \"viscous\" still has springs .* dashpots_alone\(\)"):

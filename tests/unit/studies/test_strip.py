@@ -7,6 +7,7 @@ from small_cases import OPEN, SOIL, small
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.errors import CaseError
+from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
 from dembound.studies.strip import calibration_pulse, in_one_layer
 
@@ -47,7 +48,7 @@ def test_without_a_usable_wave_a_pulse_is_two_hundred_diameters_long(case) -> No
 def test_a_pass_goes_on_for_a_tenth_of_the_pulse_after_its_peak_is_due(bar, side: str, travel: float) -> None:
     step = 1e-4
     long = bar({"wave.pulse.period": 0.05, "run.time_step": step})
-    found = calibrate(long, side, tolerance=2.0, start=1.0)
+    found = calibrate(long, side, Calibrating(tolerance=2.0, start=1.0))
 
     # the peak leaves the opposite end at T/2 and takes L/c through 17.5 m at 1000 m/s; an input side lets it in itself.
     # A whole number of steps may round to either side

@@ -13,7 +13,7 @@ from warned_cases import warned
 from dembound import api
 from dembound.disks.kind import Disks
 from dembound.disks.material.packing_waves import front_of
-from dembound.disks.ram import SceneSizes
+from dembound.disks.memory import SceneSizes
 from dembound.disks.reports.beside_wave import Grid, undisturbed
 from dembound.disks.reports.facts import disk_facts
 from dembound.disks.reports.summary import describe_layers, describe_side

@@ -5,6 +5,7 @@ from small_cases import PUSHED, small
 
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.studies.asked import Loading
 from dembound.studies.laboratory.sample import RISE, Sample, ignored, sample_of
 from dembound.studies.laboratory.study import fitted
 
@@ -15,7 +16,7 @@ RANDOM = BROKEN | {"packing": BRICK | {"pattern": "B"}}
 
 
 def sample(test="ucs", changes=RANDOM, **options) -> Sample:
-    return sample_of(small(TABLES, changes=changes), test, **options)
+    return sample_of(small(TABLES, changes=changes), test, Loading(**options))
 
 
 @pytest.mark.parametrize("test", ["ucs", "tension", "brazilian", "biaxial"])
@@ -39,7 +40,7 @@ def test_the_case_of_a_test_can_be_run_alone(test: str) -> None:
 
 def test_grips_hold_both_components_and_other_tables_do_not_count() -> None:
     case = small(TABLES, changes=RANDOM)
-    grips = loads(sample_of(case, "ucs", ends="grips", damp=0.1, rate=2.0).text())
+    grips = loads(sample_of(case, "ucs", Loading(ends="grips", damp=0.1, rate=2.0)).text())
 
     assert grips.boundary["top"].hold == ("normal", "shear")
     assert grips.material.damp == 0.1

@@ -11,6 +11,7 @@ from dembound.results.reader import open_record
 from dembound.results.results import Results
 from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
+from dembound.studies.asked import Calibrating
 from dembound.studies.sweep.members import ENERGY, members_of, unit_of, variations
 from dembound.studies.sweep.perform import ALONE, MEMBERS, OUTCOMES, Outcome, forget_replaced, outcome_in, perform
 
@@ -60,7 +61,7 @@ def test_calibrations_are_those_of_the_case_alone(bar, task) -> None:
     for method in ("impedance", "homogenised"):
         ((member,), _) = members_of(bar(), changes, "calibrate", method)
         values = perform(task(member, "calibrate", method)).values
-        (right,) = [each for each in calibrate_all(member.case, method=method) if each.side == "right"][:1]
+        (right,) = [each for each in calibrate_all(member.case, Calibrating(method=method)) if each.side == "right"][:1]
         assert values["boundary.right.beta_p"] == right.result
         assert values["boundary.right.beta_p.passes"] == len(right.beta)
         assert ("boundary.right.beta_p.ratio" in values) == (method == "impedance")

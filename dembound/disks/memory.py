@@ -1,8 +1,8 @@
-"""The most RAM that a run of disks needs, from the numbers of its disks and contacts.
+"""The most RAM that a run of disks needs, and the bytes on disk of its results, from numbers of disks and contacts.
 
-Bytes are counted from the shapes of arrays, for n disks in s slots with b contacts; the history-dependent law lists p
-pairs, in q places. Temporary arrays are those of the largest moment of a stage. Zeros that are never written to take
-no RAM: steady forces without loads, work space for contacts that are computed one by one.
+The history-dependent law lists pairs, those of a disk in as many places as it has slots. Temporary arrays are those of
+the largest moment of a stage. Zeros that are never written take no RAM: steady forces without loads, work space for
+contacts that are computed one by one.
 """
 
 from __future__ import annotations
@@ -15,18 +15,21 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.continuum.medium import Medium
-from dembound.continuum.sizing import GridSizes, body_bytes, header_bytes, snapshot_bytes
+from dembound.continuum.sizing import GridSizes
 from dembound.disks.contacts.layout import LEAST_FILL
 from dembound.disks.contacts.pairs import PIECE
 from dembound.disks.contacts.row_plan import columns_of
 from dembound.disks.material.packed_material import nominal_moduli
 from dembound.disks.surroundings.settings import expected_tops, mesh_of, settings_of, signals_of
 from dembound.kernels.compiler.lanes import LANES
-from dembound.motion.resources import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
+from dembound.motion.memory import Storage, for_paraview, largest, must_fit, recorded, total
 from dembound.places import is_within
 
 PAIRS_PER_CONTACT = 1.08
 """Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
+
+BLOCK, WIDTH = 256, 6
+"""Steps of a block of the record, and numbers of a node in it."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,26 @@ class SceneSizes:
     def moving(self) -> float:
         """Number of slots of disks and nodes."""
         return self.slots + (0 if self.grid is None else self.grid.nodes)
+
+    @property
+    def counts(self) -> dict[str, float]:
+        """Numbers of all things that take memory, see `motion.memory.BYTES`."""
+        pairs = PAIRS_PER_CONTACT * self.contacts
+        places = pairs * self.slots / self.disks
+        beyond: dict[str, float] = {}
+        if self.grid is not None:
+            beyond = {**self.grid.counts, "tie": self.ties, "tie_row": self.ties * (self.grid.order + 1)}
+        return {
+            "disk": self.disks,
+            "disk_slot": self.slots,
+            "slot": self.moving,
+            "contact": self.contacts,
+            "pair": pairs,
+            "place": places,
+            "piece": min(PIECE, places),
+            **recorded(self.probes, BLOCK, WIDTH, self.supported),
+            **beyond,
+        }
 
     @classmethod
     def expected(cls, case: DiskCase) -> SceneSizes:
@@ -146,128 +169,91 @@ def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes |
     scenes : of the case, and, if there is one, of the row stepped in its place; before : the scene before an
     excavation.
     """
-    whole, stepped = scenes[0], scenes[-1]
+    whole, stepped, first = scenes[0], scenes[-1], before or scenes[0]
     built = sum(scene_bytes(case, z) for z in ([*scenes] if before is None else [*scenes, before]))
-    stages = {"build": scene_bytes(case, before or whole) + building_bytes(before or whole)}
-    stages["export"] = export_bytes(case, whole)
+    stages = {"build": scene_bytes(case, first) + total(first.counts, "sorting")}
     stages["run"] = built + _run_bytes(case, whole, stepped)
+    if case.output.snapshots:  # when the scene is gone
+        output = case.output
+        numbers = _has_history(case) + output.peaks
+        stages["export"] = total(whole.counts, "export", export_stress=output.stress, export_number=numbers)
     if case.static is not None:
         kept = 0.0 if before is None else pairs_bytes(case, before)  # from which the excavated body begins
-        stages["settle"] = built + kept + _settling_bytes(case, before or whole)
+        stages["settle"] = built + kept + _settling_bytes(case, first)
     elif _has_history(case):
-        stages["list"] = built + listing_bytes(stepped)
+        stages["list"] = built + _listing_bytes(stepped)
     return largest(stages, case)
 
 
 def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Bytes of a scene: positions, radii, twins and tiles (36 n), slots, mass, inertia, part of a cell; its contacts.
-
-    Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
-    """
-    rows = 8 * z.slots if z.in_rows else 4 * z.disks + 16 * z.contacts
-    if z.grid is not None:
-        rows += body_bytes(z.grid) + (354 + 32 * (z.grid.order + 1)) * z.ties  # half bonds, and these for the kernels
-    return (36 + 8 + 24 + 24 * bool(case.load)) * z.disks + 12 * z.contacts + rows
-
-
-def building_bytes(z: SceneSizes) -> float:
-    """Bytes of temporary arrays as contacts are sorted: columns and lanes (24 n), ends with their keys (66 b)."""
-    return 24 * z.disks + 66 * z.contacts
+    """Bytes of a scene, with the arrays of the law of a continuum."""
+    rows = {"in_rows": z.in_rows, "one_by_one": not z.in_rows}
+    return total(z.counts, "scene", "mesh", "layers", "half_bonds", steady=bool(case.load), **rows)
 
 
 def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Bytes of the list of pairs with a history.
-
-    For q places 38 bytes of numbers, types and states, and forces (4, q); per pair its place, image and two ends (18
-    p); per slot the ends, arms and origin (28 s); cells (8 n); in rows also the places of disks (24 n). Factors of
-    strengths take 8 q and tiles (16 n), dashpots 32 q with masses (8 s).
-    """
-    pairs, places = _pairs(z)
-    rows = 24 * z.disks if z.in_rows else 0.0
-    if case.material.pb_scatter is not None:
-        rows += 8 * places + 16 * z.disks
-    if case.material.has_dashpots:
-        rows += 32 * places + 8 * z.slots
-    return (38 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
+    """Bytes of the list of pairs with a history."""
+    scatter, dashpots = case.material.pb_scatter is not None, case.material.has_dashpots
+    return total(z.counts, "pairs", pairs_in_rows=z.in_rows, scatter=scatter, dashpots=dashpots)
 
 
-def listing_bytes(z: SceneSizes) -> float:
-    """Bytes while pairs are listed anew: the old list without forces (56 p), the new one, arrays to sort by.
-
-    Sorting takes the pairs and their history (52 p), sorted (24 p) with places and owners (24 p), and the order of the
-    ends with work space (24 p); the new arrays have 38 q.
-    """
-    pairs, places = _pairs(z)
-    rows = 24 * z.disks if z.in_rows else 0.0
-    return (56 + 52 + 24 + 24 + 24) * pairs + 38 * places + 28 * z.slots + 8 * z.disks + rows
-
-
-def export_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Bytes of a snapshot as a file for ParaView, when the scene is gone.
-
-    Particles and fields as read (84 n), points and vertices with offsets and types (52 n), fields in single precision
-    with their temporaries (72 n), bytes and text of the largest array (80 n); with stress 72 n more, with the number
-    of contacts 12 n.
-    """
-    more = 72 * case.output.stress + 12 * _has_history(case) + 12 * case.output.peaks
-    return (84 + 52 + 72 + 80 + more) * z.disks if case.output.snapshots else 0.0
-
-
-def stress_bytes(z: SceneSizes) -> float:
-    """Bytes of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
-
-    For each of its pairs, their constants (12) and 15 numbers of places, vectors, forces and products.
-    """
-    return 24 * z.slots + 48 * z.disks + 27 * 8 * min(PIECE, _pairs(z)[1])
-
-
-def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
-    """Bytes of a checkpoint: displacements and velocities of disks and nodes (48 n), columns and forces of pairs.
-
-    The columns are numbers, types, images, states and whether they closed (13 p), shear, slip and step (24 p), and
-    forces (32 p).
-    """
-    return 48 * (z.disks + z.moving - z.slots) + (69 * _pairs(z)[0] if history else 0.0)
+def _listing_bytes(z: SceneSizes) -> float:
+    """Bytes while pairs are listed anew."""
+    return total(z.counts, "listing", pairs_in_rows=z.in_rows)
 
 
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     """Bytes of motion, ledger and record of the stepped scene, its pairs, and a snapshot of the whole scene."""
-    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(z.probes, 256, 6, z.supported)
-    moving += 8 * z.moving * case.output.peaks
-    snapshot = 48.0 * whole.disks
-    if not _has_history(case):
-        pairs = 13 * z.contacts  # for the strain energy
-        steady = 24 * (z.disks + z.slots) * bool(case.load)
-    else:
-        pairs = pairs_bytes(case, z)
-        snapshot += 34 * _pairs(z)[0]  # forces, to count contacts
-        steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
-    settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
-    if case.is_damped:  # memories, forces and layers, and forces at rest
-        drag = 48 * (case.damping.type == "rayleigh")
-        settled += (24 * case.damping.memories + 25 + 24 * (case.static is not None) + drag) * z.slots
+    has_history, damping = _has_history(case), case.damping
+    counts = z.counts
+    if case.is_damped:
+        counts["memory"] = damping.memories * z.slots
+    moving = total(
+        counts,
+        *("motion", "ledger", "record"),
+        peaks=case.output.peaks,
+        strain_energy=not has_history,
+        loads=bool(case.load) or has_history,
+        change=has_history,
+        settled=case.static is not None,
+        damping=case.is_damped,
+        damped_rest=case.is_damped and case.static is not None,
+        drag=case.is_damped and damping.type == "rayleigh",
+    )
+    pairs = pairs_bytes(case, z) if has_history else 0.0
+    fields = total(whole.counts, "fields", contact_count=has_history)
     if case.output.stress:
-        snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))
-    header = 0.0
-    if whole.grid is not None:
-        snapshot += snapshot_bytes(whole.grid)
-        header = header_bytes(whole.grid)
-    checkpoint = checkpoint_bytes(z, history=_has_history(case)) if case.run.checkpoint > 0.0 else 0.0
-    kept = max(snapshot * bool(case.output.snapshots), checkpoint, header)
-    return moving + kept + pairs + steady + settled
+        fields = max(fields, total(counts, "stress", "stress_field"))
+    kept = [
+        (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
+        total(counts, "saved", saved_pairs=has_history) * (case.run.checkpoint > 0.0),
+        total(whole.counts, "mesh_header"),
+    ]
+    return moving + pairs + max(kept)
 
 
 def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
-    """Bytes of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
-    loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
-    moving = motion_bytes(z.slots) + pairs_bytes(case, z) + loads + stress_bytes(z)
-    return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))
+    """Bytes of a static stage: its motion, pairs under any law, and at its end loads, forces and stresses."""
+    counts = z.counts | {"slot": z.slots, "sample": 0.0}
+    moving = total(counts, "motion", "settling_loads", "stress", "record") + pairs_bytes(case, z)
+    return total(counts, "settling") + max(moving, _listing_bytes(z))
 
 
-def _pairs(z: SceneSizes) -> tuple[float, float]:
-    """Numbers of listed pairs and of places for them."""
-    pairs = PAIRS_PER_CONTACT * z.contacts
-    return pairs, pairs * z.slots / z.disks
+def storage_of(case: DiskCase, z: SceneSizes) -> Storage:
+    """Bytes on disk of the results of a scene."""
+    counts, output, has_history, layered = z.counts, case.output, _has_history(case), bool(case.layer)
+    fields = {"tensors": output.stress, "numbers": has_history}
+    numbers = has_history + output.peaks + layered
+    vtu = total(counts, "vtu", vtu_forces=output.contacts, **fields | {"numbers": numbers})
+    vtkhdf = total(counts, "vtkhdf", vtkhdf_forces=output.contacts, **fields)
+    record = total(counts, "snapshot", tensors=output.stress, coordination=has_history, forces=output.contacts)
+    fixed = for_paraview(output.paraview, 0.0, total(counts, "vtkhdf_header", numbers=layered))
+    stages = {"saved_pairs": has_history, "state_history": has_history, "state_settled": case.static is not None}
+    return Storage(
+        header=total(counts, "header", numbers=layered) + fixed,
+        snapshot=record + for_paraview(output.paraview, vtu, vtkhdf),
+        checkpoint=total(counts, "saved", "state", "layers", **stages),
+    )
 
 
 def _has_history(case: DiskCase) -> bool:

@@ -7,7 +7,8 @@ from meshes import stepped
 from dembound.continuum.medium import Medium
 from dembound.continuum.mesh import Around, Mesh
 from dembound.continuum.part import GridBody
-from dembound.continuum.sizing import GridSizes, body_bytes, memories_bytes
+from dembound.continuum.sizing import GridSizes
+from dembound.motion.memory import total
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 BOX = (0.0, 0.0, 40.0, 20.0)
@@ -52,5 +53,5 @@ def test_bytes_are_those_of_the_arrays(name: str, order: int) -> None:
     lines = sum(each.nbytes for each in mesh._element_lines)
     in_scene = 48.0 * sizes.nodes  # positions, mass, inertia, slot and node of the scene's layout
 
-    assert memories_bytes(sizes) == pytest.approx(memories, rel=0.03)
-    assert body_bytes(sizes) == pytest.approx(sum(arrays.values()) + lines + in_scene, rel=0.1)
+    assert total(sizes.counts, "layers") == pytest.approx(memories, rel=0.03)
+    assert total(sizes.counts, "mesh", "layers") == pytest.approx(sum(arrays.values()) + lines + in_scene, rel=0.1)

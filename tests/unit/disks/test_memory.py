@@ -5,12 +5,12 @@ from disk_systems import LAMB
 from small_cases import SURROUNDED, small
 
 from dembound.disks.contacts import layout
-from dembound.disks.ram import SceneSizes, expected_bytes, pairs_bytes, scene_bytes
+from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, scene_bytes
 from dembound.disks.scene import build
 from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.errors import CaseError
 from dembound.machine import Memory
-from dembound.motion import resources
+from dembound.motion import memory
 from dembound.packings import random_brick
 
 RANDOM = {"pattern": "B", "bricks": [20, 4], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
@@ -100,7 +100,7 @@ def test_what_is_recorded_counts(bar) -> None:
 
 
 def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:
-    monkeypatch.setattr(resources, "memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
     monkeypatch.setattr(random_brick, "load_or_pack", None)  # a call would raise a TypeError
     case = bar({**FREE, "packing": {**RANDOM, "bricks": [1000, 1000]}})
 

@@ -2,12 +2,11 @@
 
 import pytest
 
-from dembound.bar import cost as bar_ram
 from dembound.bar.scene import build_bar
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.methods.opening import COLUMNS
-from dembound.motion import resources
+from dembound.motion import memory
 
 
 def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
@@ -19,14 +18,15 @@ def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
 
     work = 16 * nodes  # of the kernels
     # there is a spring less than nodes
-    assert bar_ram.bonds_bytes(nodes, lengths) == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
+    counts = {"node": nodes, "bond": lengths * nodes, "link": (lengths + 1) * nodes}
+    assert memory.total(counts, "bonds") == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
     bundle = bonds.opening.bundle
     listed = [getattr(bundle, name) for name in COLUMNS] + [bundle.below]
-    assert bar_ram.opening_bytes(nodes, lengths) == sum(each.nbytes for each in listed)
+    assert memory.total(counts, "opening") == sum(each.nbytes for each in listed)
 
 
 def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
-    monkeypatch.setattr(resources, "memory_here", lambda: Memory(300e6, 250e6))
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
     said = r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "
     with pytest.raises(CaseError, match=said):
         build_bar(spalling({"bar.spacing": 1e-6}))
