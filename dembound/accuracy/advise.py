@@ -6,12 +6,12 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from dembound.accuracy.cause import Truth
 from dembound.accuracy.choice import value_at
 from dembound.accuracy.judge import Advice, Proposal, Receiver
 from dembound.accuracy.judges import judge_of
 from dembound.casefile import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Truth
 from dembound.motion.clock import Clock
 
 BOUNDS = (0.1, 0.03, 0.01, 0.003)

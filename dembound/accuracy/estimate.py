@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.repeat import Cracked, repeated
 from dembound.accuracy.runner import BUDGET, SHORT
 from dembound.casefile import Case
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import require_writable
+from dembound.formulas.cause import Causes
+from dembound.formulas.history import History, Motions
 from dembound.motion.clock import Clock
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write

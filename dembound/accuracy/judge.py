@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
 from dembound.casefile.model import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import Motions
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
 

@@ -14,10 +14,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from dembound.accuracy.choice import AnyCase, digest
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.watch import current
 from dembound.casefile import Case
 from dembound.casefile.tables import ENDING
+from dembound.formulas.history import History, Motions
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
-from dembound.accuracy.cause import Cause
-from dembound.accuracy.history import Motions
+from dembound.formulas.cause import Cause
+from dembound.formulas.history import Motions
 from dembound.interrupts import look
 from dembound.running import Progress
 

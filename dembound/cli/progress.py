@@ -10,12 +10,12 @@ from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemai
 from rich.progress import Progress as RichProgress
 from rich.text import Text
 
-from dembound.accuracy.cause import Cause
-from dembound.accuracy.history import Motions
 from dembound.accuracy.table import in_one_line
 from dembound.accuracy.watch import Watch, watched_by
 from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, err
+from dembound.formulas.cause import Cause
+from dembound.formulas.history import Motions
 from dembound.interrupts import exit_code_of
 from dembound.motion.trackers import Run
 from dembound.running import Progress

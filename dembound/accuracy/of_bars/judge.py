@@ -9,9 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judge import Advice, Judge, Receiver
 from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
 from dembound.accuracy.of_bars.causes import causes_of_bar
@@ -19,7 +17,6 @@ from dembound.accuracy.of_bars.exact import PulseInBar
 from dembound.accuracy.of_bars.options import bar_choices
 from dembound.accuracy.of_bars.search import advice_for_bar
 from dembound.accuracy.runner import STEP_AND_END, Run
-from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.linear_steps import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
@@ -27,6 +24,9 @@ from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.model import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import History, Motions
+from dembound.kinds.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.motion.endings import monitored
 from dembound.motion.paths import plane_needed
 from dembound.places import nearest_number

@@ -11,20 +11,20 @@ from functools import cached_property
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judge import Advice, Proposal, Receiver
 from dembound.accuracy.of_bars.causes import EQUAL, FACTOR, HOW, QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
-from dembound.accuracy.of_bars.motions import AT_PLACE, BarMotions
 from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
-from dembound.accuracy.of_bars.rods import Window
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
+from dembound.formulas.bars.motions import AT_PLACE, BarMotions
+from dembound.formulas.bars.rods import Window
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import History, Motions
 from dembound.methods.rod import Range
 from dembound.results.compare import at_times
 from dembound.results.histories import in_words

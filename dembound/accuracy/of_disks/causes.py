@@ -8,19 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
-from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.companions import Companions, is_moved
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.held_sides import HeldSides
-from dembound.accuracy.of_disks.kinks import causes_of_kinks
-from dembound.accuracy.of_disks.rest import REST, causes_of_rest
 from dembound.accuracy.watch import current
 from dembound.casefile.disks import DiskCase
-from dembound.disks.entry import late_by
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
+from dembound.formulas.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.held_sides import HeldSides
+from dembound.formulas.disks.kinks import causes_of_kinks
+from dembound.formulas.disks.rest import REST, causes_of_rest
+from dembound.formulas.history import Motions
 from dembound.results.compare import at_times
 
 LEAST_LATE = 1e-4

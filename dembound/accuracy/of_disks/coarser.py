@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
-from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.boundaries import Boundary
 from dembound.boundaries.intact import Keeping
 from dembound.casefile.disks import DiskCase
@@ -32,6 +31,7 @@ from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
+from dembound.formulas.disks.waves import is_square_lattice
 from dembound.laws import Moduli
 from dembound.packings.square import Square
 from dembound.table import Box

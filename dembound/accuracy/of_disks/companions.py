@@ -10,13 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.moved_sides import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser
 from dembound.accuracy.of_disks.enlarged import Pair, bricks_needed, enlarged, pair_of, ratios, sides_of_pair
-from dembound.accuracy.of_disks.held_sides import HeldSides
-from dembound.accuracy.of_disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
-from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Run, Runner, at_step
 from dembound.boundaries import SIDES, is_far, normal_axis
 from dembound.boundaries.boundary import Boundary
@@ -24,10 +20,14 @@ from dembound.boundaries.symmetry import Symmetry
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts.pairs import BREAK_TIME
-from dembound.disks.entry import depths_held
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.formulas.disks.entry import depths_held
+from dembound.formulas.disks.held_sides import HeldSides
+from dembound.formulas.disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
+from dembound.formulas.disks.waves import is_square_lattice
+from dembound.formulas.history import History, Motions
 from dembound.packings import Packing
 
 QUANTITIES = ("velocity", "displacement")

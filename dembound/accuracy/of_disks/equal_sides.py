@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.of_disks.matched_sides import Reflected, factor_for, reflected
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, normal_axis
 from dembound.boundaries.intact import Keeping
@@ -20,6 +19,7 @@ from dembound.disks.matching import Held, homogenised_beta, per_metre, supports_
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.sides import ground_at, media_of, medium_of_side
 from dembound.errors import CaseError
+from dembound.formulas.disks.matched_sides import Reflected, factor_for, reflected
 
 EVEN = 1e-6
 """Largest relative difference between numbers that count as equal: rounding."""

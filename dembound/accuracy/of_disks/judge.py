@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import OWN, Choice, Named
-from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import Advice, Judge, Proposal, Receiver
 from dembound.accuracy.moved_sides import Extended
 from dembound.accuracy.of_disks.causes import (
@@ -27,9 +25,7 @@ from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.enlarged import extended_disks
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLayeredColumn, ExactPlaneWave
-from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.rest import causes_of_rest
 from dembound.accuracy.of_disks.search import CUT, LONGEST, Search, before_breaks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.reference import Exact
@@ -40,6 +36,10 @@ from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.rest import causes_of_rest
+from dembound.formulas.history import Motions
 from dembound.motion.endings import monitored
 from dembound.motion.kind import Plan
 from dembound.running.planning import plan

@@ -21,13 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import USUAL, Cause, share_of
 from dembound.accuracy.choice import keeps
-from dembound.accuracy.delays import error_of_delay
-from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.enlarged import ratios
-from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, STRENGTH_KEYS
@@ -38,6 +34,10 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LOAD_FACTOR
 from dembound.errors import CaseError, DemboundError
+from dembound.formulas.cause import USUAL, Cause, share_of
+from dembound.formulas.delays import error_of_delay
+from dembound.formulas.disks.waves import is_square_lattice
+from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
 from dembound.motion.paths import Source

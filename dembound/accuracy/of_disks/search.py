@@ -18,10 +18,8 @@ from itertools import count
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.history import History
 from dembound.accuracy.judge import Proposal
 from dembound.accuracy.of_disks.causes import (
     PLACES,
@@ -33,12 +31,14 @@ from dembound.accuracy.of_disks.causes import (
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
-from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.watch import begins
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
+from dembound.formulas.cause import SIDES, STEP, Cause, Causes, Truth
+from dembound.formulas.disks.near import WALL_FACTOR, wall_errors
+from dembound.formulas.history import History
 from dembound.motion.kind import Plan
 from dembound.words import percent
 

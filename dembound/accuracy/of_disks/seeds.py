@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, Causes
-from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import no_seed
 from dembound.accuracy.runner import Runner
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import Motions
 from dembound.results.histories import Quantity
 
 PACKING = "packing"

@@ -8,12 +8,12 @@ from advised import advised
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks import search as of_disks
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
+from dembound.formulas.history import Motions
 from dembound.running import Progress
 
 BAR = PUSHED | {

@@ -7,15 +7,15 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.cause import STEP
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.places import places_of_loads
-from dembound.accuracy.of_disks.rest import REST
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
+from dembound.formulas.cause import STEP
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.places import places_of_loads
+from dembound.formulas.disks.rest import REST
 from dembound.kinds import with_changes
 from dembound.running import Progress, plan
 

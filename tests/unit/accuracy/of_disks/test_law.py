@@ -9,11 +9,11 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase
+from dembound.formulas.history import History, Motions
 from dembound.kinds import with_changes
 from dembound.motion.paths import Source
 from dembound.running import Progress, plan

@@ -7,19 +7,19 @@ import pytest
 from small_cases import OPEN, SOIL, Tables, small
 
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.history import earlier
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.enlarged import enlarged
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.matched_sides import reflected
 from dembound.accuracy.runner import measure
-from dembound.disks.entry import late_by
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packing_waves import front_of, largest_phase_speed
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.matched_sides import reflected
+from dembound.formulas.history import earlier
 from dembound.results.compare import relative_error
 from dembound.running import Progress
 

@@ -1,0 +1,162 @@
+"""Reflection of plane waves along the normal of a side by its dashpots, and beyond that of rock itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.accuracy.watch import begins
+from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, axis_of_motion, normal_axis
+from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
+from dembound.disks.reflection.bricks import end_scene
+from dembound.disks.reflection.meter import Meter
+from dembound.disks.scene import DiskScene, with_boundaries
+from dembound.disks.sides import ground_at, media_of
+from dembound.disks.surroundings.frequencies import frequencies_of
+from dembound.errors import CaseError
+from dembound.formulas.cause import MOTIONS
+from dembound.formulas.disks.entry import side_ends
+from dembound.formulas.disks.waves import crossing_time
+from dembound.formulas.history import History
+
+FREQUENCIES = 3
+"""Number of frequencies of the case's waves, of equal energy each, over which energies are averaged."""
+
+_MEASURED: dict[tuple[object, ...], dict[Motion, float]] = {}
+"""Energies found in this process: on random bricks they take seconds, and choices differ in few of their sides."""
+
+
+@dataclass(frozen=True)
+class Reflected:
+    """Reflected over incident velocity of plane waves along the normal of a side.
+
+    size : RMS over the frequencies of the case. dashpots : the part in phase, by the stiffness of dashpots alone,
+    positive where they are too soft.
+    """
+
+    size: float
+    dashpots: float
+
+    @property
+    def signed(self) -> float:
+        """The size with the sign of the part in phase."""
+        return math.copysign(self.size, self.dashpots)
+
+    @property
+    def out_of_phase(self) -> float:
+        """Part of the size in quadrature to the dashpots, as reflected by excess mass at the side."""
+        return math.sqrt(max(self.size**2 - self.dashpots**2, 0.0))
+
+
+def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Reflected]:
+    """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
+
+    Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
+    reflection of its homogenised stiffness is given. Along several layers it is the mean of energies.
+    """
+    found = [(part.length, _in_layer(scene, side, part, medium, time_step)) for part, medium in media_of(scene, side)]
+    if len(found) == 1:
+        return found[0][1]
+    return {motion: _mean([(length, each[motion]) for length, each in found]) for motion in found[0][1]}
+
+
+def _mean(parts: Sequence[tuple[float, Reflected]]) -> Reflected:
+    """The reflection of a side whose parts, of these lengths, reflect differently: RMS, with the mean part in phase."""
+    lengths, each = zip(*parts, strict=True)
+    size = math.sqrt(np.average([one.size**2 for one in each], weights=lengths))
+    return Reflected(size, float(np.average([one.dashpots for one in each], weights=lengths)))
+
+
+def _in_layer(
+    scene: DiskScene, side: str, part: Edge, medium: BoundaryMedium, time_step: float
+) -> dict[Motion, Reflected]:
+    """Reflection by a part of a side beside one medium; see `reflected`."""
+    case = scene.case.uniform_at(float(part.positions[:, 1].mean()))
+    table = case.side(side).dashpots_alone()
+    end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
+    require_dashpots_alone(end, side)
+    matched, wide = medium.matched(part), {m: homogenised_beta(end, side, m) for m in table.factors}
+    own = scene.case.side(side).factors_at(part, medium)
+    known = {motion: factor for motion, factor in own.items() if math.isfinite(matched[motion])}
+    # sides of narrow bodies have more disks for their length than those of a periodic one
+    equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
+    end = with_boundaries(
+        end, replace(end.case, boundary={**end.case.boundary, side: table.with_factors(equal).at_rest()})
+    )
+    measured = _energies(scene, end, side, time_step)
+    found: dict[Motion, Reflected] = {}
+    for motion, factor in known.items():
+        simple = (matched[motion] - factor) / (matched[motion] + factor)
+        size = math.sqrt(measured[motion]) if motion in measured else abs(simple)
+        found[motion] = Reflected(min(size, 1.0), simple)
+    return found
+
+
+def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
+    """Shares of reflected energy, means over the case's frequencies; unknown ones are left out.
+
+    On random packings in continuous time: steps change the amplitude by 1e-4, disks reflect a hundred times as much.
+    """
+    case = end.case
+    step = time_step if case.packing.is_lattice else 0.0
+    frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
+    packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
+    key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))
+    if key not in _MEASURED:
+        _MEASURED[key] = _measured(end, side, step, frequencies)
+    return _MEASURED[key]
+
+
+def _measured(end: DiskScene, side: str, step: float, frequencies: np.ndarray) -> dict[Motion, float]:
+    """Mean shares of reflected energy; empty where the side cannot be measured."""
+    try:
+        meter = Meter.of(side, step, end)
+        found = meter.measure(
+            frequencies, [0.0], report=lambda each: begins(f"reflection at the {side} side, {each:.3g} Hz")
+        )[0]
+    except CaseError:
+        return {}
+    means = {kind: float(np.nanmean(found.total(kind))) for kind in found.kinds if np.isfinite(found.total(kind)).any()}
+    return {kind: share for kind, share in means.items() if math.isfinite(share)}
+
+
+def factor_for(share: float) -> float:
+    """β over the matched β with which dashpots reflect this share of the velocity."""
+    return (1.0 - share) / (1.0 + share)
+
+
+def errors_on_rock(
+    scene: DiskScene, side: str, own: History, back: Mapping[Motion, float]
+) -> dict[str, np.ndarray | float]:
+    """Errors (k, 2) of a recorded motion by a side on rock, by quantity.
+
+    back : by kind of wave, the reflection of the opposite side, from which the motion comes back to the rock; 0 where
+    nothing does, but for waves that only leave: there the recorded motion itself arrives.
+    """
+    axis, errors = normal_axis(side), {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+    driven, ground = scene.case.side(side).waves, ground_at(scene, side)
+    for motion, (mass, stiffness) in side_ends(scene, side).items():
+        speed, column = ground.wave_speeds(axis)[0 if motion == "p" else 1], axis_of_motion(side, motion)
+        alpha = factors_in(scene, side)[motion] / homogenised_beta(scene, side, motion)
+        if not math.isfinite(speed):
+            continue
+        trip = 2.0 * crossing_time(scene, axis, motion) if driven else 0.0
+        returned = back[motion] if driven else 1.0
+        lag = -2.0 * (stiffness * alpha**2 - mass) / (speed * (1.0 + alpha) ** 2)
+        velocity = own.values["velocity"][:, column]
+        rates = {"velocity": np.gradient(velocity, own.time), "displacement": velocity}
+        for quantity, rate in rates.items():
+            error = returned * lag * np.interp(own.time - trip, own.time, rate, left=0.0)
+            again, late = (1.0 - alpha) / (1.0 + alpha) * returned, trip
+            while driven and abs(again) > REPEATED and late < own.time[-1] - own.time[0]:
+                errors[quantity][:, column] += again * np.interp(own.time - late, own.time, error, left=0.0)
+                again, late = again * (1.0 - alpha) / (1.0 + alpha) * returned, late + trip
+            errors[quantity][:, column] += error
+    return dict(errors)
+
+
+REPEATED = 1e-3
+"""Share of an error that comes back from the rock once more, below which it no longer counts."""
