@@ -19,7 +19,7 @@ from dembound.accuracy.advise import BOUNDS
 from dembound.accuracy.advise import advise as find_advice
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.estimate import estimate_if_asked, estimate_results
-from dembound.accuracy.judge import Advice
+from dembound.accuracy.proposal import Advice
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.judge import Proposal
+from dembound.accuracy.proposal import Proposal
 from dembound.casefile import Case
 from dembound.errors import DemboundError
 from dembound.formulas.cause import Cause, Causes

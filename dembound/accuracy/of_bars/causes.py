@@ -6,8 +6,8 @@ Up to the first change of its bonds a bar is linear, and its motion is known at 
 - endless: the same nodes and steps, but beyond an absorbing end the bar goes on, and the wave that enters there is the
   one that the case gives.
 - exact time: the endless bar with Δt = 0.
-- exact: rods without nodes (formulas/bars/rods.py), whose absorbing ends absorb everything. The stress of a node at an end is taken
-  half a spacing inside, and compared with the exact stress there.
+- exact: rods without nodes (formulas/bars/rods.py), whose absorbing ends absorb everything. The stress of a node at an
+  end is taken half a spacing inside, and compared with the exact stress there.
 
 The difference own − endless is the error of the ends, endless − exact time the error of the time step, exact time −
 exact the error of the grid. So all reflections are included, also of ends softer than the bar, and losses at

@@ -25,6 +25,7 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.formulas.disks.entry import depths_held
 from dembound.formulas.disks.held_sides import HeldSides
+from dembound.formulas.disks.matched_sides import Reflections
 from dembound.formulas.disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
 from dembound.formulas.disks.waves import is_square_lattice
 from dembound.formulas.history import History, Motions
@@ -55,7 +56,7 @@ class Companions:
     """Companions of a case of disks.
 
     case, scene, time_step (s) : of the given case. most : particle-steps that the first two may take. runner : runs
-    them.
+    them. reflections : of sides, measured before.
     """
 
     case: DiskCase
@@ -63,6 +64,7 @@ class Companions:
     time_step: float
     most: float
     runner: Runner = field(default_factory=Runner)
+    reflections: Reflections = field(default_factory=Reflections, repr=False)
     _made: dict[tuple[str, float], Coarser] = field(default_factory=dict, init=False, repr=False)
     _behind: dict[str, Motions] = field(default_factory=dict, init=False, repr=False)
     _mirrored: dict[str, Motions] = field(default_factory=dict, init=False, repr=False)
@@ -72,7 +74,7 @@ class Companions:
         """The scenes with the case's own sides and with far ones; None where no side that reflects can move."""
         if self.case.ground.size is not None or not sides_of_pair(self.case):
             return None
-        return pair_of(self.case, self.scene, self.time_step, self.most)
+        return pair_of(self.case, self.scene, self.time_step, self.most, self.reflections)
 
     @cached_property
     def diameter(self) -> float:
@@ -347,7 +349,7 @@ class Companions:
         if self.pair is not None:
             self._made.setdefault((self.case.text, self.time_step), self.pair.given)
         if key not in self._made:
-            self._made[key] = coarser(case, scene, time_step, self.diameter)
+            self._made[key] = coarser(case, scene, time_step, self.diameter, self.reflections)
         return self._made[key]
 
     def _with_sides(

@@ -36,6 +36,7 @@ from dembound.disks.stepping.load_factor import LOAD_FACTOR
 from dembound.errors import CaseError, DemboundError
 from dembound.formulas.cause import USUAL, Cause, share_of
 from dembound.formulas.delays import error_of_delay
+from dembound.formulas.disks.matched_sides import Reflections
 from dembound.formulas.disks.waves import is_square_lattice
 from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
@@ -102,11 +103,17 @@ class ElasticTwin:
 
 
 def elastic_twin(
-    case: DiskCase, planned: Plan[DiskScene], most: float, kept: Sequence[str], runner: Runner
+    case: DiskCase,
+    planned: Plan[DiskScene],
+    most: float,
+    kept: Sequence[str],
+    runner: Runner,
+    reflections: Reflections | None = None,
 ) -> ElasticTwin | None:
     """The case under the elastic law if that holds with the case's disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
+    reflections : of sides, measured before.
     """
     if not _may_be_elastic(case, planned.scene):
         return None
@@ -127,7 +134,7 @@ def elastic_twin(
     if case.bearing is not None:  # a default of the case's law and static stage
         twin = with_changes(twin, {"boundary.bottom.bearing": case.bearing.model_dump()})
     try:
-        factor, diameter = _factor(watched, planned, most, runner)
+        factor, diameter = _factor(watched, planned, most, runner, reflections)
     except DemboundError:  # no companion can run
         return None
     found = ElasticTwin(twin, plan(twin), factor, diameter, _turning_stress(case))
@@ -185,13 +192,15 @@ def _diameter(planned: Plan[DiskScene]) -> float:
     return planned.scene.ground.brick.mean_diameter
 
 
-def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner) -> tuple[float, float]:
+def _factor(
+    case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner, reflections: Reflections | None
+) -> tuple[float, float]:
     """The load factor, and the diameter (m) of the disks with which it was found: the smallest affordable."""
     own, scene = _diameter(planned), planned.scene
     quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
     for ratio in (1.0, *ratios(case, scene)):
         if ratio > 1.0:
-            larger = coarser(case, scene, planned.time_step, ratio * own).case
+            larger = coarser(case, scene, planned.time_step, ratio * own, reflections).case
             quiet = replace(larger, output=larger.output.model_copy(update={"load_factor": True}))
         built = build(quiet)
         step = choose_step(built)[0]

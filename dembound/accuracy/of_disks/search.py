@@ -20,7 +20,6 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.judge import Proposal
 from dembound.accuracy.of_disks.causes import (
     PLACES,
     causes_of_choice,
@@ -32,7 +31,8 @@ from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
-from dembound.accuracy.watch import begins
+from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.watch import Watch
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
@@ -107,15 +107,16 @@ class _Tried:
 class Search:
     """The search for a choice.
 
-    planned : the case; own_cost : CPU time (s) of its steps. twin : the case under the elastic law, if that replaces
-    its own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried :
-    number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
-    whether choices were left out for that. waiting : queue by cost: diameters, their choices, and built choices that
-    cost more than others may. of_sides : by arrangement and distance the largest error of its sides. of_disks : by
-    factors of diameter and step, with a continuum and without, the smallest error of disks. of_given_disks : the error
-    of the given disks. known : choices whose error was found for another bound, by the digest of their case. made :
-    built choices, and None for those that cannot run, by the text of their case and how much farther away their sides
-    are. counted : factors of the diameter for which the time steps of continua have been found.
+    planned : the case; own_cost : CPU time (s) of its steps. watch : told of what is done. twin : the case under the
+    elastic law, if that replaces its own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST`
+    and `AFFORDABLE`. tried : number of choices whose error was found. spent : CPU time of building choices for a bound,
+    as counted, s; was_cut : whether choices were left out for that. waiting : queue by cost: diameters, their choices,
+    and built choices that cost more than others may. of_sides : by arrangement and distance the largest error of its
+    sides. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
+    of_given_disks : the error of the given disks. known : choices whose error was found for another bound, by the
+    digest of their case. made : built choices, and None for those that cannot run, by the text of their case and how
+    much farther away their sides are. counted : factors of the diameter for which the time steps of continua have been
+    found.
     """
 
     companions: Companions
@@ -123,6 +124,7 @@ class Search:
     of: Truth
     kept: Sequence[str]
     own_cost: float
+    watch: Watch
     twin: ElasticTwin | None = None
     longest: float | None = None
     bound: float = 0.0
@@ -348,7 +350,7 @@ class Search:
         """
         if (known := self.known.get(key := digest(built.case))) is not None:
             return known
-        begins(f"choice {self.tried + 1}, {built.option.words}")
+        self.watch.begins(f"choice {self.tried + 1}, {built.option.words}")
         option, scene, step = built.option, built.planned.scene, built.planned.time_step
         motions = self.companions.recorded(scene)
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
@@ -18,7 +18,7 @@ from dembound.formulas.cause import CONTINUUM, GRID, MOTIONS, NEAR, STEP, USUAL,
 from dembound.formulas.delays import Delay, error_of_delay, error_of_steps
 from dembound.formulas.disks.continuum import CONTINUUM_FACTOR, expected_errors
 from dembound.formulas.disks.held_sides import HeldSides
-from dembound.formulas.disks.matched_sides import Reflected, errors_on_rock, reflected
+from dembound.formulas.disks.matched_sides import Reflected, Reflections, errors_on_rock
 from dembound.formulas.disks.near import NEAR_FACTOR, WALL_FACTOR, errors_near_loads, wall_errors
 from dembound.formulas.disks.waves import (
     AXES,
@@ -49,10 +49,11 @@ NEAR_SURFACE = 2.0
 
 @dataclass(frozen=True)
 class Formulas:
-    """The formulas of one scene, which runs at a time step (s)."""
+    """The formulas of one scene, which runs at a time step (s); reflections : of its sides."""
 
     scene: DiskScene
     time_step: float
+    reflections: Reflections = field(default_factory=Reflections, repr=False)
 
     def causes(self, motions: Motions) -> list[Cause]:
         """All causes but absorbing sides without waves; motions : by monitor."""
@@ -86,7 +87,7 @@ class Formulas:
                 reason = "its springs send back waves, which check computes and an estimate does not"
                 yield Cause.unknown(f"{side} side", reason)
             if table.factors:
-                shares = reflected(self.scene, side, self.time_step)
+                shares = self.reflections.of(self.scene, side, self.time_step)
                 parts = {name: self._returned(own, side, waves, shares) for name, own in motions.items()}
                 words = "by the reflection of dashpots at normal incidence"
                 yield Cause(f"{side} side", words, parts, factor=USUAL)

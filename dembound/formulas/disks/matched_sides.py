@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.watch import begins
 from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, axis_of_motion, normal_axis
 from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
 from dembound.disks.reflection.bricks import end_scene
@@ -21,12 +20,10 @@ from dembound.formulas.cause import MOTIONS
 from dembound.formulas.disks.entry import side_ends
 from dembound.formulas.disks.waves import crossing_time
 from dembound.formulas.history import History
+from dembound.interrupts import look
 
 FREQUENCIES = 3
 """Number of frequencies of the case's waves, of equal energy each, over which energies are averaged."""
-
-_MEASURED: dict[tuple[object, ...], dict[Motion, float]] = {}
-"""Energies found in this process: on random bricks they take seconds, and choices differ in few of their sides."""
 
 
 @dataclass(frozen=True)
@@ -51,16 +48,81 @@ class Reflected:
         return math.sqrt(max(self.size**2 - self.dashpots**2, 0.0))
 
 
-def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Reflected]:
-    """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
+class Reflections:
+    """Reflections by sides with dashpots, each measured once: on random bricks that takes seconds.
 
-    Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
-    reflection of its homogenised stiffness is given. Along several layers it is the mean of energies.
+    Parameters
+    ----------
+    begins : is told in words what is measured, before; by default only looks for requests to end.
     """
-    found = [(part.length, _in_layer(scene, side, part, medium, time_step)) for part, medium in media_of(scene, side)]
-    if len(found) == 1:
-        return found[0][1]
-    return {motion: _mean([(length, each[motion]) for length, each in found]) for motion in found[0][1]}
+
+    def __init__(self, begins: Callable[[str], None] = lambda what: look()) -> None:
+        self._begins = begins
+        self._measured: dict[tuple[object, ...], dict[Motion, float]] = {}
+
+    def of(self, scene: DiskScene, side: str, time_step: float) -> dict[Motion, Reflected]:
+        """Reflection of P and S waves along the normal by a side with dashpots, without its springs.
+
+        Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, the
+        reflection of its homogenised stiffness is given. Along several layers it is the mean of energies.
+        """
+        parts = media_of(scene, side)
+        found = [(part.length, self._in_layer(scene, side, part, medium, time_step)) for part, medium in parts]
+        if len(found) == 1:
+            return found[0][1]
+        return {motion: _mean([(length, each[motion]) for length, each in found]) for motion in found[0][1]}
+
+    def _in_layer(
+        self, scene: DiskScene, side: str, part: Edge, medium: BoundaryMedium, time_step: float
+    ) -> dict[Motion, Reflected]:
+        """Reflection by a part of a side beside one medium; see `of`."""
+        case = scene.case.uniform_at(float(part.positions[:, 1].mean()))
+        table = case.side(side).dashpots_alone()
+        end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
+        require_dashpots_alone(end, side)
+        matched, wide = medium.matched(part), {m: homogenised_beta(end, side, m) for m in table.factors}
+        own = scene.case.side(side).factors_at(part, medium)
+        known = {motion: factor for motion, factor in own.items() if math.isfinite(matched[motion])}
+        # sides of narrow bodies have more disks for their length than those of a periodic one
+        equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
+        end = with_boundaries(
+            end, replace(end.case, boundary={**end.case.boundary, side: table.with_factors(equal).at_rest()})
+        )
+        measured = self._energies(scene, end, side, time_step)
+        found: dict[Motion, Reflected] = {}
+        for motion, factor in known.items():
+            simple = (matched[motion] - factor) / (matched[motion] + factor)
+            size = math.sqrt(measured[motion]) if motion in measured else abs(simple)
+            found[motion] = Reflected(min(size, 1.0), simple)
+        return found
+
+    def _energies(self, scene: DiskScene, end: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
+        """Shares of reflected energy, means over the case's frequencies; unknown ones are left out.
+
+        On random packings in continuous time: steps change the amplitude by 1e-4, disks reflect a hundred times as
+        much.
+        """
+        case = end.case
+        step = time_step if case.packing.is_lattice else 0.0
+        frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
+        packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
+        key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))
+        if key not in self._measured:
+            self._measured[key] = self._measure(end, side, step, frequencies)
+        return self._measured[key]
+
+    def _measure(self, end: DiskScene, side: str, step: float, frequencies: np.ndarray) -> dict[Motion, float]:
+        """Mean shares of reflected energy; empty where the side cannot be measured."""
+        try:
+            meter = Meter.of(side, step, end)
+            found = meter.measure(
+                frequencies, [0.0], report=lambda each: self._begins(f"reflection at the {side} side, {each:.3g} Hz")
+            )[0]
+        except CaseError:
+            return {}
+        totals = {kind: found.total(kind) for kind in found.kinds}
+        means = {kind: float(np.nanmean(total)) for kind, total in totals.items() if np.isfinite(total).any()}
+        return {kind: share for kind, share in means.items() if math.isfinite(share)}
 
 
 def _mean(parts: Sequence[tuple[float, Reflected]]) -> Reflected:
@@ -68,59 +130,6 @@ def _mean(parts: Sequence[tuple[float, Reflected]]) -> Reflected:
     lengths, each = zip(*parts, strict=True)
     size = math.sqrt(np.average([one.size**2 for one in each], weights=lengths))
     return Reflected(size, float(np.average([one.dashpots for one in each], weights=lengths)))
-
-
-def _in_layer(
-    scene: DiskScene, side: str, part: Edge, medium: BoundaryMedium, time_step: float
-) -> dict[Motion, Reflected]:
-    """Reflection by a part of a side beside one medium; see `reflected`."""
-    case = scene.case.uniform_at(float(part.positions[:, 1].mean()))
-    table = case.side(side).dashpots_alone()
-    end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
-    require_dashpots_alone(end, side)
-    matched, wide = medium.matched(part), {m: homogenised_beta(end, side, m) for m in table.factors}
-    own = scene.case.side(side).factors_at(part, medium)
-    known = {motion: factor for motion, factor in own.items() if math.isfinite(matched[motion])}
-    # sides of narrow bodies have more disks for their length than those of a periodic one
-    equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
-    end = with_boundaries(
-        end, replace(end.case, boundary={**end.case.boundary, side: table.with_factors(equal).at_rest()})
-    )
-    measured = _energies(scene, end, side, time_step)
-    found: dict[Motion, Reflected] = {}
-    for motion, factor in known.items():
-        simple = (matched[motion] - factor) / (matched[motion] + factor)
-        size = math.sqrt(measured[motion]) if motion in measured else abs(simple)
-        found[motion] = Reflected(min(size, 1.0), simple)
-    return found
-
-
-def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
-    """Shares of reflected energy, means over the case's frequencies; unknown ones are left out.
-
-    On random packings in continuous time: steps change the amplitude by 1e-4, disks reflect a hundred times as much.
-    """
-    case = end.case
-    step = time_step if case.packing.is_lattice else 0.0
-    frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
-    packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
-    key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))
-    if key not in _MEASURED:
-        _MEASURED[key] = _measured(end, side, step, frequencies)
-    return _MEASURED[key]
-
-
-def _measured(end: DiskScene, side: str, step: float, frequencies: np.ndarray) -> dict[Motion, float]:
-    """Mean shares of reflected energy; empty where the side cannot be measured."""
-    try:
-        meter = Meter.of(side, step, end)
-        found = meter.measure(
-            frequencies, [0.0], report=lambda each: begins(f"reflection at the {side} side, {each:.3g} Hz")
-        )[0]
-    except CaseError:
-        return {}
-    means = {kind: float(np.nanmean(found.total(kind))) for kind in found.kinds if np.isfinite(found.total(kind)).any()}
-    return {kind: share for kind, share in means.items() if math.isfinite(share)}
 
 
 def factor_for(share: float) -> float:

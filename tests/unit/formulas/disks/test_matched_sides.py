@@ -6,7 +6,7 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.disks.scene import build
-from dembound.formulas.disks.matched_sides import Reflected, factor_for, reflected
+from dembound.formulas.disks.matched_sides import Reflected, Reflections, factor_for
 
 STEP = 1e-4
 
@@ -18,7 +18,7 @@ def shares(side="right", **keys):
         side: {"type": "viscous", **keys},
     }
     wave = {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.04}}
-    return reflected(build(small(PUSHED | {"boundary": boundary, "wave": wave})), side, STEP)
+    return Reflections().of(build(small(PUSHED | {"boundary": boundary, "wave": wave})), side, STEP)
 
 
 def test_each_motion_has_its_own_factor_and_sign():
