@@ -182,7 +182,7 @@ def bar() -> Callable[..., Case]:
 @pytest.fixture
 def unstable() -> Callable[[], AbstractContextManager[None]]:
     """Makes a context in which disks run with twice their largest stable step."""
-    from dembound.disks import kind
+    from dembound.kinds.disks import kind
 
     @contextmanager
     def with_long_steps() -> Iterator[None]:

@@ -20,7 +20,7 @@ from dembound.formulas.disks.entry import late_by
 from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.held_sides import HeldSides
 from dembound.formulas.disks.kinks import causes_of_kinks
-from dembound.formulas.disks.matched_sides import Reflections
+from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.rest import REST, causes_of_rest
 from dembound.formulas.history import Motions
 from dembound.results.compare import at_times
@@ -193,7 +193,7 @@ def ground_causes(
     motions = companions.recorded(scene)
     places = Cause(PLACES, MOVED, companions.moved(scene), of_disks=True, factor=USUAL)
     formulas = Formulas(scene, time_step, companions.reflections)
-    kinks = causes_of_kinks(formulas, motions, companions.diameter)
+    kinks = causes_of_kinks(formulas.dispersion, motions, companions.diameter)
     known = formulas.causes(motions)
     if watch is not None:
         _tell(watch, known, scene, motions)

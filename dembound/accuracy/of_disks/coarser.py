@@ -31,7 +31,7 @@ from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
-from dembound.formulas.disks.matched_sides import Reflections
+from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.waves import is_square_lattice
 from dembound.laws import Moduli
 from dembound.packings.square import Square

@@ -25,8 +25,8 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.formulas.disks.entry import depths_held
 from dembound.formulas.disks.held_sides import HeldSides
-from dembound.formulas.disks.matched_sides import Reflections
 from dembound.formulas.disks.places import middle_of_loads, patch_around, places_of_loads, weights_at
+from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.waves import is_square_lattice
 from dembound.formulas.history import History, Motions
 from dembound.packings import Packing

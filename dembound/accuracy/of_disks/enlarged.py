@@ -23,7 +23,7 @@ from dembound.disks.stability import choose_step
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.settings import signals_of
 from dembound.errors import CaseError
-from dembound.formulas.disks.matched_sides import Reflections
+from dembound.formulas.disks.reflections import Reflections
 from dembound.holes.hole import Hole
 from dembound.holes.rectangle import Rectangle
 from dembound.motion.endings import monitored

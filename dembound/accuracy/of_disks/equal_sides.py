@@ -19,7 +19,7 @@ from dembound.disks.matching import Held, homogenised_beta, per_metre, supports_
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.sides import ground_at, media_of, medium_of_side
 from dembound.errors import CaseError
-from dembound.formulas.disks.matched_sides import Reflected, Reflections, factor_for
+from dembound.formulas.disks.reflections import Reflected, Reflections, factor_for
 
 EVEN = 1e-6
 """Largest relative difference between numbers that count as equal: rounding."""

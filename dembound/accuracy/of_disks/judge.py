@@ -39,7 +39,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.formulas.cause import Causes, Truth
 from dembound.formulas.disks.formulas import Formulas
-from dembound.formulas.disks.matched_sides import Reflections
+from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.rest import causes_of_rest
 from dembound.formulas.history import Motions
 from dembound.motion.endings import monitored

@@ -37,7 +37,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
 from dembound.formulas.cause import SIDES, STEP, Cause, Causes, Truth
-from dembound.formulas.disks.near import WALL_FACTOR, wall_errors
+from dembound.formulas.disks.walls import WALL_FACTOR, wall_errors
 from dembound.formulas.history import History
 from dembound.motion.kind import Plan
 from dembound.words import percent

@@ -20,7 +20,7 @@ All this is measured on 60 scenes (benchmarks/continuum_errors.py).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +33,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.settings import ROUNDING, near_fields, signals_of
-from dembound.formulas.disks.packing import lattice_errors, unevenness
+from dembound.formulas.cause import CONTINUUM, MOTIONS, Cause
 
 PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5
 """Nodes in the length of the shortest wave that elements pass on, the power of f above which they return less, and the
@@ -73,6 +73,39 @@ CONTINUUM_FACTOR = 2.2
 times for 455 rows with 0.01 % and more, 2.1 times for the 296 with 0.1 % and more. The largest are 3.4 times as
 large, beside a hole in pattern C, else 2.6. Errors of displacements below 0.01 % under waves are overestimated,
 up to a hundred times."""
+
+
+def causes_of_continuum(scene: DiskScene, places: Mapping[str, np.ndarray]) -> Iterator[Cause]:
+    """Errors of the continuum beyond sides, at places (2,) m of monitors."""
+    if scene.outside is None:
+        return
+    if (sizes := expected_errors(scene, places)) is None:
+        reason = (
+            "its layers stretch both axes, as its ground is strongly anisotropic, and return a part of motion"
+            if scene.outside.body.is_stretched_along
+            else "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+        )
+        yield Cause.unknown(CONTINUUM, reason)
+        return
+    parts = {name: dict(zip(MOTIONS, each, strict=True)) for name, each in sizes.items()}
+    words = "by the formulas of its elements, layers and ties"
+    yield Cause(CONTINUUM, words, parts, factor=CONTINUUM_FACTOR)
+    if _contacts_open(scene):
+        reason = "open contacts make disks softer than it, whose stiffness is that of closed ones"
+        yield Cause.unknown(f"{CONTINUUM} beside contacts", reason)
+
+
+def _contacts_open(scene: DiskScene) -> bool:
+    """Whether contacts beside a continuum may be open, at rest or under a wave.
+
+    Without stress disks just touch. A static stage leaves the contacts of a lattice closed; in a random packing it
+    opens some: in pattern B 10 % under a locked-in stress that has relaxed upwards, where waves 40 m long in a box
+    of 15 m have an error of 13 %, but 1 % with contacts closed for good, or with a tenth of their stiffness; 1.9 %
+    under weight, and 67 % without stress.
+    """
+    case = scene.case
+    at_rest = case.static is not None and case.packing.is_lattice
+    return scene.has_history and scene.ground.moduli.emod > 0.0 and not at_rest
 
 
 def expected_errors(scene: DiskScene, places: Mapping[str, np.ndarray]) -> dict[str, tuple[float, float]] | None:
@@ -214,3 +247,47 @@ def _both_shallow(scene: DiskScene, outside: Surroundings, depth: float, source:
     surface = scene.case.size[1]
     is_free = "top" not in outside.sides or outside.box[3] < (1.0 - ROUNDING) * surface
     return is_free and bool(min(source[1], place[1]) > surface - depth)
+
+
+def unevenness(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> float:
+    """k²LD, RMS over the energy of velocities, to which scattering by uneven bricks is proportional; 0 on lattices.
+
+    k : wave number of the slowest waves, none shorter than a brick; L, D : length of a random brick and mean diameter
+    of its disks. The largest over signals. lowest : frequency (Hz) from which on the energy is that of displacements,
+    see `sizing.energies`.
+    """
+    if scene.case.packing.is_lattice:
+        return 0.0
+    assert scene.outside is not None
+    speed, brick = sizing.slowest(scene.outside.body.medium), scene.ground.brick
+    length, found = float(max(brick.size)), [0.0]
+    for signal in signals:
+        frequency, energy = sizing.energies(signal, lowest)
+        k = 2.0 * math.pi * np.minimum(frequency / speed, 1.0 / length)
+        squares = (k**2 * length * brick.mean_diameter) ** 2
+        found.append(math.sqrt(float(energy @ squares / energy.sum())))
+    return max(found)
+
+
+def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:
+    """Error of velocities by reflection of ties, and by the lag of waves over the scene's longer side L, RMS over RMS.
+
+    Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
+    dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
+    the slowest waves, of the speed c; the largest over signals. lowest : frequency (Hz) from which on errors are those
+    of displacements, see `sizing.energies`.
+    """
+    outside = scene.outside
+    assert outside is not None
+    speed = sizing.slowest(outside.body.medium)
+    diameter, length = scene.ground.brick.mean_diameter, max(scene.case.size)
+    returned = 1.0 / 16.0 + 0.25 * outside.wall.lag * speed / diameter
+    found = []
+    for signal in signals:
+        frequency, energy = sizing.energies(signal, lowest)
+        k = 2.0 * math.pi * frequency / speed
+        square = (k * diameter) ** 2
+        errors = [returned * square, k * length * square / 24.0]
+        found.append([math.sqrt(float(np.sum(energy * np.minimum(e, 1.0) ** 2) / energy.sum())) for e in errors])
+    ties, across = np.max(found, axis=0).tolist()
+    return ties, across

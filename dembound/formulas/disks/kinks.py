@@ -18,7 +18,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.formulas.cause import GRID, MOTIONS, STEP, Cause
 from dembound.formulas.delays import error_of_delay, error_of_steps, part_above
-from dembound.formulas.disks.formulas import Formulas, Way
+from dembound.formulas.disks.dispersion import Dispersion, Way
 from dembound.formulas.history import History, Motions
 from dembound.places import spans_all
 from dembound.table import Box
@@ -47,12 +47,12 @@ Signal = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Times (k,) s, velocities (k,) of a wave at them, and the part (k,) that companions do not have."""
 
 
-def causes_of_kinks(formulas: Formulas, motions: Motions, diameter: float) -> Iterator[Cause]:
+def causes_of_kinks(dispersion: Dispersion, motions: Motions, diameter: float) -> Iterator[Cause]:
     """Errors, as sizes, of grid and time step at frequencies above those of companions with disks of `diameter` (m).
 
     motions : of the companions, by monitor.
     """
-    kinks = _Kinks(formulas, diameter)
+    kinks = _Kinks(dispersion, diameter)
     found = {name: kinks.sizes(own) for name, own in motions.items()}
     words = "by the spectrum of the waves above that of companions"
     for number, (name, of_disks) in enumerate(((GRID, True), (STEP, False))):
@@ -65,7 +65,7 @@ def causes_of_kinks(formulas: Formulas, motions: Motions, diameter: float) -> It
 class _Kinks:
     """The errors of one scene whose motion is known from companions with disks of a diameter (m)."""
 
-    formulas: Formulas
+    dispersion: Dispersion
     diameter: float
     _signals: dict[tuple[str, float, float], Signal | None] = field(default_factory=dict)
 
@@ -74,7 +74,7 @@ class _Kinks:
 
         P and S waves are weighted by their shares of the squared motion.
         """
-        ways = [way for way in self.formulas.ways(own) if math.isfinite(way.path * way.speed)]
+        ways = [way for way in self.dispersion.ways(own) if math.isfinite(way.path * way.speed)]
         squares = [float(np.sum((own.values["velocity"] @ way.moves) ** 2)) for way in ways]
         grid, step = dict.fromkeys(MOTIONS, 0.0), dict.fromkeys(MOTIONS, 0.0)
         for way, square in zip(ways, squares, strict=True):
@@ -87,13 +87,13 @@ class _Kinks:
 
     def _of_way(self, way: Way) -> dict[str, tuple[float, float]]:
         """Errors of grid and time step, by quantity, of the wave on this path with the largest errors."""
-        formulas, most = self.formulas, dict.fromkeys(MOTIONS, (0.0, 0.0))
-        for name, power in sorted(_waves(formulas.scene.case, way)):
+        dispersion, most = self.dispersion, dict.fromkeys(MOTIONS, (0.0, 0.0))
+        for name, power in sorted(_waves(dispersion.scene.case, way)):
             if (signal := self._signal(name, power, way.speed)) is None:
                 continue
             time, whole, above = signal
-            step = formulas.time_step
-            delays = (formulas.delay(way, each) for each in (0.0, step))
+            step = dispersion.time_step
+            delays = (dispersion.delay(way, each) for each in (0.0, step))
             grid, stepped = (error_of_delay(time, above[:, None], delay) for delay in delays)
             sampled = error_of_steps(time, above[:, None], step)
             for k, (quantity, motion) in enumerate(zip(MOTIONS, (whole, step * np.cumsum(whole)), strict=True)):
@@ -106,7 +106,7 @@ class _Kinks:
         """A wave of a speed (m/s) with its spectrum times ω^power; None if companions contain all of it."""
         key = name, power, speed
         if key not in self._signals:
-            case, step = self.formulas.scene.case, self.formulas.time_step
+            case, step = self.dispersion.scene.case, self.dispersion.time_step
             wave = case.wave[name]
             highest = SLOW * 2.0 * speed / self.diameter
             begin = wave.begin() - AHEAD * 2.0 * math.pi / highest

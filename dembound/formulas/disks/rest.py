@@ -1,15 +1,21 @@
-"""Errors by the state in which a static stage leaves contacts that slide.
+"""Errors by the state at rest: how a static stage leaves contacts that slide, and a stress that turns with the disks.
 
 Steady forces take up what is out of balance, so that nothing moves without a wave. But a contact that bears a force f
 less than at its limit slides only when the wave has brought f. The wave's force in a contact is ρ c v D, with the
 velocity v and the diameter D, so the error is f/(ρ c v D). Of f a part is left by the stage, the mean unbalanced force;
 the other is chance: a load that differs by rounding ends in another rest, whatever the ratio asked for. Without sliding
 there is one rest and no such error.
+
+A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
+come to rest under a stress p: the stress turns with the disks. S waves then come earlier or later by p/(2ρc_s²) of
+their time, and motion near a load differs by p/ρc_p² or so (docs/evidence/errors.md).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,9 +24,13 @@ from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
-from dembound.formulas.cause import Cause, Causes
+from dembound.disks.sources import sources_of
+from dembound.formulas.cause import MOTIONS, USUAL, Cause, Causes, share_of
+from dembound.formulas.delays import error_of_delay
 from dembound.formulas.disks.waves import is_square_lattice
 from dembound.formulas.history import Motions
+from dembound.motion.paths import Source
+from dembound.table import EVERYWHERE
 
 REST = "rest"
 """Name of the cause."""
@@ -45,6 +55,11 @@ LOOSE = 0.5
 
 REST_FACTOR = 2.0
 """Factor of these errors, see `CHANCE`; of what is left alone they were 0.3 to 2.9 times as large."""
+
+
+NEAR_LOAD = 1.3
+"""Largest part of p/ρc_p² by which velocities and displacements in rock near a load were measured to differ, apart from
+what comes later; at a surface both together were too small by a factor of 1.3."""
 
 
 def causes_of_rest(scene: DiskScene, motions: Motions, static: Mapping[str, Any]) -> Causes:
@@ -79,3 +94,28 @@ def _by_contacts(ground: PackedMaterial) -> float:
     """Largest share of the stiffness of a layer that contacts bear, and not bonds."""
     moduli = [material.moduli for material in materials_in(ground)]
     return max(own.emod / (own.emod + own.pb_rmul * own.pb_emod) for own in moduli)
+
+
+def causes_of_turning(scene: DiskScene, recorded: Motions, stress: float) -> list[Cause]:
+    """The error by an elastic law in place of one whose contacts turn with the disks, under a stress (Pa) at rest.
+
+    recorded : by monitor.
+    """
+    if stress == 0.0:
+        return []
+    ground, sources = scene.ground, sources_of(scene.case, scene.ground)
+    p, s = (np.nanmin([ground.wave_speeds(axis)[kind] for axis in (0, 1)]) for kind in (0, 1))
+    near, slower = NEAR_LOAD * stress / (ground.density * p**2), stress / (2.0 * ground.density * s**2)
+    errors: dict[str, dict[str, np.ndarray | float]] = {}
+    for name, own in recorded.items():
+        path = max((_way(each, own.place, scene.case.size) for each in sources), default=0.0)
+        delay = partial(np.full_like, fill_value=slower * path / s)
+        parts = error_of_delay(own.time, own.values["velocity"], delay)
+        late = dict(zip(MOTIONS, parts, strict=True))
+        errors[name] = {quantity: near + share_of(part, quantity, own) for quantity, part in late.items()}
+    return [Cause("law", "by the stress at rest, which does not turn with the disks", errors, factor=USUAL)]
+
+
+def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
+    """Path (m) of waves from a source to a place; the whole scene if they enter on all sides."""
+    return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])

@@ -26,7 +26,7 @@ from dembound.disks.surroundings.settings import (
     signals_of,
 )
 from dembound.formulas.disks.continuum import coarsest, elements_by_layer, largest_element, near_error
-from dembound.formulas.disks.packing import packing_facts
+from dembound.kinds.disks.packing_facts import packing_facts
 from dembound.words import Entries, percent
 
 SHOWN = 5e-4

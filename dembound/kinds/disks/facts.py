@@ -13,13 +13,13 @@ from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping import Mechanisms, Rayleigh
 from dembound.disks.contacts.layout import fill
-from dembound.disks.matching import sent_back
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import viscous_share
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.frequencies import mean_frequency
 from dembound.formulas.disks.entry import MOTIONS
+from dembound.formulas.disks.reflections import sent_back
 from dembound.kinds.disks.continuum_facts import continuum_facts
 from dembound.kinds.disks.incident_facts import incident_facts
 from dembound.kinds.disks.intact import intact_facts

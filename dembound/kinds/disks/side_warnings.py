@@ -10,13 +10,14 @@ from dembound.boundaries.description import TOO_MUCH, poor_factor, reflected, to
 from dembound.boundaries.edge import Edge, Motion, is_far, normal_axis
 from dembound.boundaries.viscoelastic import Springs
 from dembound.casefile.disks.model import DiskCase
-from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
+from dembound.disks.matching import Held, factors_in, homogenised_beta
 from dembound.disks.material.constants import continues
 from dembound.disks.scene import DiskScene
 from dembound.disks.sides import layers_beside, media_of
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.frequencies import mean_frequency
 from dembound.formulas.disks.beside_wave import taken_from_waves
+from dembound.formulas.disks.reflections import sent_back
 from dembound.words import with_unit
 
 UNLIKE = 2.0

@@ -32,7 +32,7 @@ from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError
 from dembound.formulas.cause import share_of
-from dembound.formulas.disks.near import wall_errors
+from dembound.formulas.disks.walls import wall_errors
 from dembound.formulas.history import History
 from dembound.kinds.disks.side_warnings import side_warnings
 from dembound.kinds.disks.summary import describe_side

@@ -18,7 +18,7 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.formulas.disks.entry import late_by
 from dembound.formulas.disks.formulas import Formulas
-from dembound.formulas.disks.matched_sides import Reflections
+from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.history import earlier
 from dembound.results.compare import relative_error
 from dembound.running import Progress

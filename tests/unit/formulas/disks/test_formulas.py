@@ -10,10 +10,11 @@ from dembound.accuracy.of_disks.causes import causes_of_run
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import build
 from dembound.formulas.cause import GRID, STEP
+from dembound.formulas.disks.driven_sides import reflected_motion
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.formulas import Formulas, reflected_motion
+from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.held_sides import HeldSides
-from dembound.formulas.disks.matched_sides import Reflected
+from dembound.formulas.disks.reflections import Reflected
 from dembound.formulas.history import History
 from dembound.results.compare import relative_error
 from dembound.running import Progress

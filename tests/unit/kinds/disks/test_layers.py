@@ -18,7 +18,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import step_limit
 from dembound.disks.supports import forces_of
 from dembound.disks.trials import trials_of_disks
-from dembound.formulas.disks.beside_wave import Grid, undisturbed
+from dembound.formulas.disks.coarse_grid import Grid, undisturbed
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.summary import describe_layers, describe_side

@@ -1,25 +1,22 @@
-"""Reflection of plane waves along the normal of a side by its dashpots, and beyond that of rock itself."""
+"""Reflection of plane waves along the normal of a side by its dashpots, springs and half cells."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, axis_of_motion, normal_axis
-from dembound.disks.matching import factors_in, homogenised_beta, require_dashpots_alone
+from dembound.boundaries.description import reflected
+from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, axis_of_motion
+from dembound.disks.matching import Held, homogenised_beta, require_dashpots_alone
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter
 from dembound.disks.scene import DiskScene, with_boundaries
-from dembound.disks.sides import ground_at, media_of
+from dembound.disks.sides import media_of
 from dembound.disks.surroundings.frequencies import frequencies_of
 from dembound.errors import CaseError
-from dembound.formulas.cause import MOTIONS
-from dembound.formulas.disks.entry import side_ends
-from dembound.formulas.disks.waves import crossing_time
-from dembound.formulas.history import History
 from dembound.interrupts import look
 
 FREQUENCIES = 3
@@ -137,35 +134,21 @@ def factor_for(share: float) -> float:
     return (1.0 - share) / (1.0 + share)
 
 
-def errors_on_rock(
-    scene: DiskScene, side: str, own: History, back: Mapping[Motion, float]
-) -> dict[str, np.ndarray | float]:
-    """Errors (k, 2) of a recorded motion by a side on rock, by quantity.
+def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float, part: int = 0) -> float:
+    """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
 
-    back : by kind of wave, the reflection of the opposite side, from which the motion comes back to the rock; 0 where
-    nothing does, but for waves that only leave: there the recorded motion itself arrives.
+    From the impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the
+    packing, over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
+    part : number in `media_of`.
     """
-    axis, errors = normal_axis(side), {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-    driven, ground = scene.case.side(side).waves, ground_at(scene, side)
-    for motion, (mass, stiffness) in side_ends(scene, side).items():
-        speed, column = ground.wave_speeds(axis)[0 if motion == "p" else 1], axis_of_motion(side, motion)
-        alpha = factors_in(scene, side)[motion] / homogenised_beta(scene, side, motion)
-        if not math.isfinite(speed):
-            continue
-        trip = 2.0 * crossing_time(scene, axis, motion) if driven else 0.0
-        returned = back[motion] if driven else 1.0
-        lag = -2.0 * (stiffness * alpha**2 - mass) / (speed * (1.0 + alpha) ** 2)
-        velocity = own.values["velocity"][:, column]
-        rates = {"velocity": np.gradient(velocity, own.time), "displacement": velocity}
-        for quantity, rate in rates.items():
-            error = returned * lag * np.interp(own.time - trip, own.time, rate, left=0.0)
-            again, late = (1.0 - alpha) / (1.0 + alpha) * returned, trip
-            while driven and abs(again) > REPEATED and late < own.time[-1] - own.time[0]:
-                errors[quantity][:, column] += again * np.interp(own.time - late, own.time, error, left=0.0)
-                again, late = again * (1.0 - alpha) / (1.0 + alpha) * returned, late + trip
-            errors[quantity][:, column] += error
-    return dict(errors)
-
-
-REPEATED = 1e-3
-"""Share of an error that comes back from the rock once more, below which it no longer counts."""
+    (edge, medium), held = media_of(scene, side)[part], Held.of(scene, side, part)
+    axis = axis_of_motion(side, motion)
+    own = medium.density * medium.running_speeds[0 if motion == "p" else 1]
+    if not own > 0.0:
+        return math.nan
+    impedance = complex(held.damping[axis])
+    if math.isfinite(frequency):
+        omega = 2.0 * math.pi * frequency
+        half = 0.0 if scene.case.side(side).half_cells else 0.5 * medium.density * float(edge.diameters.mean())
+        impedance += 1j * omega * half - 1j * float(held.stiffness[axis]) / omega
+    return abs(reflected(impedance / own, 1.0))

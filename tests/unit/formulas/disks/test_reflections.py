@@ -6,7 +6,7 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.disks.scene import build
-from dembound.formulas.disks.matched_sides import Reflected, Reflections, factor_for
+from dembound.formulas.disks.reflections import Reflected, Reflections, factor_for
 
 STEP = 1e-4
 

@@ -1,14 +1,9 @@
-"""Errors near features smaller than a wave, where a lattice of disks is coarse: near forces and beside holes.
-
-Plane waves on a lattice of diameter D with the wave number k have errors of the order (kD)². Near a force motion varies
-over its distance r, too, and P and S waves are not separate: along the ray S waves, which a lattice disperses more,
-carry as much of it as P waves. Beside a region of half-width b over which forces are spread it varies less: (r/(r +
-b))² as much. Walls of holes consist of disks, so that their shape is known to a diameter.
-"""
+"""Errors beside holes, whose walls consist of disks, so that their shape is known to a diameter."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -19,20 +14,9 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings.settings import signals_of
-from dembound.formulas.cause import MOTIONS
-from dembound.formulas.disks.places import middle_of_forces
-from dembound.formulas.history import History
+from dembound.formulas.cause import MOTIONS, WALLS, Cause
 from dembound.holes import Hole, Rectangle
 from dembound.holes.hole import WALL
-
-ALONG_RAY, CURVED = 0.1, 0.6
-"""Error of motion along the ray over (κD)² (r/(r + b))², κ = k + CURVED/r, with the RMS wave number k of S waves."""
-
-NEAR_FACTOR = 2.0
-"""95 % of true errors along a force in a lattice are within this factor of `errors_near_loads`: they are 0.32 to 1.84
-times as large (median 0.85) at r of 4 to 14 disks, k of 0.1 to 0.3 per disk, regions of 2 × 2, 2 × 8 and 6 × 6 disks,
-with friction and without (benchmarks/near_loads.py). In random packings single disks move otherwise than those around,
-by 4 to 40 % of the motion there, whatever the force: that is the cause `packing`."""
 
 RANDOM = 0.75
 """Error of the motion by a pressure in a hole of any shape in a random packing, times the disks along its smaller
@@ -76,52 +60,15 @@ waves 2.0 times beside circles (137, at most 2.7) and 1.8 beside squares in latt
 times in random packings (203, at most 2.0; benchmarks/walls.py). Single directions scatter more."""
 
 
-def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
-    """The error at one monitor by quantity, RMS over RMS of its larger component; 0 without localised forces.
-
-    own : the motion; its RMS frequency and its part along the ray from the nearest force determine the error.
-    """
-    rays = [(_nearest(own.place - place, scene), wide) for place, wide in _places(scene)]
-    if not rays:
-        return dict.fromkeys(own.values, 0.0)
-    diameter, (ray, wide) = scene.ground.brick.mean_diameter, min(rays, key=lambda each: float(np.hypot(*each[0])))
-    distance = max(float(np.hypot(*ray)), diameter)
-    speed = slowest_speed(scene.ground, own.place[1], own.place[1] - ray[1])
-    spread = (distance / (distance + wide)) ** 2
-    rates = {"velocity": np.gradient(own.values["velocity"], own.time, axis=0), "displacement": own.values["velocity"]}
-    found = {}
-    for quantity, values in own.values.items():
-        number = _norm(rates[quantity]) / max(_norm(values), np.finfo(float).tiny) / speed
-        size = ALONG_RAY * spread * (diameter * (number + CURVED / distance)) ** 2
-        found[quantity] = size * _along(values, own.component(quantity), ray / distance)
-    return found
-
-
-def _places(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
-    """The middle (2,) m of each localised force with a wave, and half the longer side of its region, m."""
-    loads = [load for load in scene.case.load if load.wave is not None and load.pressure is None]
-    found = []
-    for load in loads:
-        if not load.is_everywhere:
-            x0, y0, x1, y1 = load.region or (0.0, 0.0, 0.0, 0.0)
-            found.append((middle_of_forces(load, scene)[0], 0.5 * max(x1 - x0, y1 - y0)))
-    return found
-
-
-def _nearest(ray: np.ndarray, scene: DiskScene) -> np.ndarray:
-    """A ray (2,) m from a force, or from its nearest copy across periodic sides."""
-    size, periodic = np.array(scene.case.size), np.array(scene.case.periodic)
-    return np.asarray(ray - np.where(periodic, size * np.rint(ray / size), 0.0))
-
-
-def _along(values: np.ndarray, column: int, ray: np.ndarray) -> float:
-    """Share of a component (column) of a motion (k, 2) due to motion along a unit vector (2,), RMS over RMS."""
-    size = _norm(values[:, column])
-    return _norm(values @ ray) * abs(float(ray[column])) / size if size > 0.0 else 0.0
-
-
-def _norm(values: np.ndarray) -> float:
-    return float(np.linalg.norm(values))
+def causes_of_walls(scene: DiskScene, names: Iterable[str]) -> Iterator[Cause]:
+    """Errors by walls of holes at monitors of these names."""
+    case, ground = scene.case, scene.ground
+    if not case.hole:
+        return
+    diameter, places = ground.brick.mean_diameter, scene.monitored
+    parts = {name: wall_errors(case, ground, diameter, places[name]) for name in names}
+    words = "by the disks along the radius, the way of the wave, and the place"
+    yield Cause(WALLS, words, parts, of_disks=True, factor=WALL_FACTOR)
 
 
 def wall_errors(
