@@ -24,8 +24,8 @@ from error_bound_scenes import scenes
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.judges import extended
+from dembound.accuracy.of_disks.candidates import COSTLIEST
 from dembound.accuracy.of_disks.options import Built, Options
-from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build

@@ -8,8 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.of_disks.companions import Companions, is_moved
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
+from dembound.accuracy.of_disks.misplaced import errors_of_held_side, errors_of_places, is_moved
+from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
 from dembound.accuracy.runner import Runner
 from dembound.accuracy.watch import Watch
 from dembound.casefile.disks import DiskCase
@@ -132,7 +134,7 @@ def _places(companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarra
         return Cause(PLACES, AT_PLACES, {name: dict.fromkeys(MOTIONS, 0.0) for name in at}, of_disks=True)
     try:
         companions.require_affordable()
-        found, time = companions.moved(scene), next(iter(companions.far.values())).time
+        found, time = errors_of_places(companions, scene), next(iter(companions.far.values())).time
     except DemboundError as error:
         return Cause.unknown(PLACES, "; ".join(str(error).splitlines()), of_disks=True)
     return _at_times(Cause(PLACES, MOVED, found, of_disks=True, factor=USUAL), time, at)
@@ -191,7 +193,7 @@ def ground_causes(
     watch : told of those by formula as soon as they are known.
     """
     motions = companions.recorded(scene)
-    places = Cause(PLACES, MOVED, companions.moved(scene), of_disks=True, factor=USUAL)
+    places = Cause(PLACES, MOVED, errors_of_places(companions, scene), of_disks=True, factor=USUAL)
     formulas = Formulas(scene, time_step, companions.reflections)
     kinks = causes_of_kinks(formulas.dispersion, motions, companions.diameter)
     known = formulas.causes(motions)
@@ -204,7 +206,7 @@ def ground_causes(
 def rest_causes(companions: Companions, scene: DiskScene) -> Causes:
     """The errors of a choice by its static stage, which ends as that of the given case or its companion."""
     try:
-        static = companions.settled
+        static = settled_of(companions)
     except DemboundError as error:
         return Causes([Cause.unknown(REST, "; ".join(str(error).splitlines()))])
     return Causes([]) if static is None else causes_of_rest(scene, companions.recorded(scene), static)
@@ -221,7 +223,7 @@ def _with_steps_of_contacts(
         return causes
     words = "by runs with half the step, as contacts open or slide"
     try:
-        parts = companions.of_steps(scene, time_step)
+        parts = errors_of_steps(companions, scene, time_step)
     except DemboundError as error:
         found = Cause.unknown(STEP, f"{words}: {'; '.join(str(error).splitlines())}")
     else:
@@ -236,7 +238,7 @@ def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
     for side in HeldSides(scene).among_others:
         words = "by companions whose disks are held elsewhere"
         try:
-            parts = companions.of_held(scene, side)
+            parts = errors_of_held_side(companions, scene, side)
         except DemboundError as error:
             yield Cause.unknown(f"{side} side", HELD.format("; ".join(str(error).splitlines())), True)
         else:

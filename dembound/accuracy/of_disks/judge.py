@@ -12,6 +12,7 @@ from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import OWN, Choice, Named
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates
 from dembound.accuracy.of_disks.causes import (
     causes_of_choice,
     causes_of_run,
@@ -26,7 +27,7 @@ from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.enlarged import extended_disks
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLayeredColumn, ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.search import CUT, LONGEST, Search, before_breaks
+from dembound.accuracy.of_disks.search import Search, before_breaks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.reference import Exact
@@ -90,12 +91,12 @@ def advice_for_disks(
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
         watch.best(bounds[0], given)
         return Advice(shown, {bounds[0]: given}, 1)
-    searches = [Search(companions, planned, of, kept, given.cost, watch, longest=longest)]
+    searches = [Search(companions, Candidates(planned, kept, given.cost, runner, longest=longest), of, kept, watch)]
     searches[0].know(given.budget)
     if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
         own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
-        cost = planned_cost(twin.planned).seconds
-        searches.insert(0, Search(own, twin.planned, of, kept, cost, watch, twin, longest))
+        candidates = Candidates(twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest)
+        searches.insert(0, Search(own, candidates, of, kept, watch))
     best = {}
     for number, bound in enumerate(sorted(bounds, reverse=True)):
         watch.part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"

@@ -15,7 +15,7 @@ change by its s alone; to the first order both add. That a is early by s₀/c is
 continuum at x = 0 have r₀ = 0: their reflection is another cause.
 
 Other waves, of loads, scattered by holes or along a side, come back from all directions: their error is found with
-companions that have one more row of larger disks, or a mirror plane, there (`Companions.of_held`).
+companions that have one more row of larger disks, or a mirror plane, there (`errors_of_held_side`).
 """
 
 from __future__ import annotations

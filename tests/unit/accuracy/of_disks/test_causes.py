@@ -9,6 +9,7 @@ from small_cases import PUSHED, small
 from dembound.accuracy.advise import advise
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -211,11 +212,11 @@ def test_errors_of_contacts_grow_as_the_step_over_its_limit() -> None:
     assert isinstance(scene, DiskScene)
     for most in (1e9, 0.0):  # by the given disks, by larger ones
         companions = Companions(case, scene, step, most)
-        whole, half = (companions.of_steps(scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
+        whole, half = (errors_of_steps(companions, scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
         np.testing.assert_allclose(half, 0.5 * np.asarray(whole))
         finer = plan(with_changes(case, {"packing.radius": 0.125})).scene
         assert isinstance(finer, DiskScene)
-        same = companions.of_steps(finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
+        same = errors_of_steps(companions, finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
         assert np.linalg.norm(same) == pytest.approx(np.linalg.norm(np.asarray(whole)), rel=0.2)  # at another place
 
 
@@ -230,7 +231,8 @@ def test_contacts_that_remain_elastic_have_the_errors_of_the_formula() -> None:
     assert isinstance(case, DiskCase)
     planned = plan(case)
     assert isinstance(planned.scene, DiskScene)
-    assert Companions(case, planned.scene, planned.time_step, 1e9).of_steps(planned.scene, planned.time_step) == {}
+    companions = Companions(case, planned.scene, planned.time_step, 1e9)
+    assert errors_of_steps(companions, planned.scene, planned.time_step) == {}
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
@@ -245,8 +247,8 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     found = [rest_causes(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
     peaks = [np.abs(each.recorded(scene)["top"].velocity[:, :2]).max() for each in (own, larger)]
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
-    assert own.settled is not None
-    assert not own.settled["elastic"]
+    assert settled_of(own) is not None
+    assert not settled_of(own)["elastic"]
 
 
 def test_choices_have_the_error_of_the_rest() -> None:

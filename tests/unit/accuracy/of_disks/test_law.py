@@ -10,9 +10,10 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.judges import judge_of
-from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
+from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase
+from dembound.formulas.disks.rest import _way
 from dembound.formulas.history import History, Motions
 from dembound.kinds import with_changes
 from dembound.motion.paths import Source

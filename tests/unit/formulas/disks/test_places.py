@@ -6,6 +6,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.misplaced import errors_of_places
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import DiskScene, build
 from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, weights_at
@@ -118,7 +119,7 @@ def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it()
     planned = plan(high)
     larger = build(with_changes(high, {"packing.radius": 1.5}))  # type: ignore[arg-type]
     companions = Companions(high, planned.scene, planned.time_step, 1e9)
-    found, time = companions.moved(larger)["there"]["velocity"], companions.recorded(larger)["there"].time
+    found, time = errors_of_places(companions, larger)["there"]["velocity"], companions.recorded(larger)["there"].time
     runs = (measure(extended(case).case, Progress())[0] for case in (low, high))
     own, other = (run.motions["there"].at(time) for run in runs)
     true = (own.values["velocity"] - other.values["velocity"])[:, :2]
