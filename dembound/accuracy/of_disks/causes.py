@@ -93,7 +93,7 @@ def _of_ground_of_run(
     """All causes but artificial sides, at the recorded times, and the work (particle-steps) of their companions.
 
     Companions are needed for monitors and loads that are not at their places, for sides that hold disks, and for
-    contacts that open or slide. The causes are those of `of_ground` but for kinks, which a recorded motion contains.
+    contacts that open or slide. The causes are those of `ground_causes` but for kinks, which records have.
     """
     case, scene, time_step = companions.case, companions.scene, companions.time_step
     known = formulas.causes(recorded)
@@ -175,7 +175,7 @@ def causes_of_choice(
 ) -> Causes:
     """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`.
 
-    ground : the result of `of_ground`, if known.
+    ground : the result of `ground_causes`, if known.
     """
     ground = ground or ground_causes(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))

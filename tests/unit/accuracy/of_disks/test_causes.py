@@ -9,6 +9,7 @@ from small_cases import PUSHED, small
 from dembound.accuracy.advise import advise
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.misplaced import _unmoved
 from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
@@ -114,10 +115,10 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
     np.testing.assert_allclose([each.middle[0] - each.asked[0] for each in places], [0.25, -0.25], atol=1e-9)
 
     # the monitor is asked for 0.25 m to the left of its disk; seen from the right load it is 0.5 m from there
-    there = companions._places(scene)["m"]
+    there = companions.places_of(scene)["m"]
     left, right = (
-        companions._motion(companions.far, {"m": there})["m"]["velocity"]
-        - companions._unmoved({"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
+        companions.motion_at(companions.far, {"m": there})["m"]["velocity"]
+        - _unmoved(companions, {"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
         for shift in (each.middle - each.asked for each in places)
     )
     cause = next(cause for cause in ground_causes(companions, scene, planned.time_step) if cause.name == "places")

@@ -7,6 +7,7 @@ from small_cases import Tables, small
 from dembound.disks.scene import build
 from dembound.formulas.cause import GRID, STEP
 from dembound.formulas.delays import part_above
+from dembound.formulas.disks.dispersion import Dispersion
 from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.kinks import SLOW, causes_of_kinks
 from dembound.formulas.history import History
@@ -46,7 +47,7 @@ def test_what_companions_lack_and_have_make_up_the_error_of_all_frequencies(name
         next(cause for cause in formulas.causes(each) if cause.name == name).share("m", "velocity", own["m"])
         for each in (own, record(own["m"].velocity[:, 1] - above))
     )
-    (kinks,) = [each for each in causes_of_kinks(formulas, own, LARGER) if each.name == f"{name} at kinks"]
+    (kinks,) = [each for each in causes_of_kinks(formulas.dispersion, own, LARGER) if each.name == f"{name} at kinks"]
     assert kinks.of_disks == (name == GRID)
     assert whole > 2.0 * below
     # the error of the whole is that within the record; the filter is not causal, by less than 5 % of the error
@@ -55,8 +56,8 @@ def test_what_companions_lack_and_have_make_up_the_error_of_all_frequencies(name
 
 def test_smooth_waves_have_nothing_that_companions_lack() -> None:
     ricker = {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 40.0}}
-    formulas = Formulas(build(small(COLUMN | {"wave": ricker})), 2e-4)
-    assert not list(causes_of_kinks(formulas, record(np.sin(100.0 * TIME)), LARGER))
+    dispersion = Dispersion(build(small(COLUMN | {"wave": ricker})), 2e-4)
+    assert not list(causes_of_kinks(dispersion, record(np.sin(100.0 * TIME)), LARGER))
 
 
 def test_waves_of_a_force_in_a_place_have_more_high_frequencies_than_plane_ones() -> None:
@@ -68,7 +69,7 @@ def test_waves_of_a_force_in_a_place_have_more_high_frequencies_than_plane_ones(
         scene = build(small(COLUMN | sides | {"load": [load | {"region": region}]}))
         (step,) = [
             each
-            for each in causes_of_kinks(Formulas(scene, 2e-4), record(np.sin(100.0 * TIME)), LARGER)
+            for each in causes_of_kinks(Dispersion(scene, 2e-4), record(np.sin(100.0 * TIME)), LARGER)
             if each.name.startswith(STEP)
         ]
         sizes.append(step.parts["m"]["velocity"])

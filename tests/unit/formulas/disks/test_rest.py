@@ -10,9 +10,11 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.disks.scene import DiskScene, build
-from dembound.formulas.disks.rest import CHANCE, CHANCE_LATTICE, CHANCE_STRESSED, causes_of_rest
+from dembound.formulas.disks.rest import CHANCE, CHANCE_LATTICE, CHANCE_STRESSED, _way, causes_of_rest
 from dembound.formulas.history import History
 from dembound.holes import Circle
+from dembound.motion.paths import Source
+from dembound.table import EVERYWHERE
 
 STATIC: dict[str, Any] = {"elastic": False, "ratio": 1e-7, "mean_residual": 3e-3, "cracks": 0}
 STATIC |= {"before": None, "column": None}
@@ -72,3 +74,9 @@ def test_nothing_is_said_without_sliding_and_nothing_is_known_with_breaks() -> N
     (cause,) = causes_of_rest(scene(share=0.6), moved, STATIC).unknown
     assert "that they bear more than bonds" in cause.words
     assert np.isnan(causes_of_rest(body, motions(0.0), STATIC).found[0].parts["front"]["velocity"])
+
+
+def test_a_wave_on_all_sides_runs_through_the_scene() -> None:
+    size, there = (3.0, 4.0), np.array([1.0, 1.0])
+    assert _way(Source(EVERYWHERE, 0.0, 1.0, 500.0), there, size) == 5.0
+    assert _way(Source((2.0, 1.0, 2.0, 1.0), 0.0, 1.0, 500.0), there, size) == 1.0
