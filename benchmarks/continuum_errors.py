@@ -138,12 +138,12 @@ def scenes() -> Iterator[tuple[str, Tables]]:
 
 def rows(name: str, tables: Tables) -> Iterator[dict[str, Any]]:
     """Rows of the table for one scene: monitors that move at least 1 % as much as the loudest."""
-    from dembound.accuracy.history import loud
     from dembound.accuracy.judges import extended
     from dembound.accuracy.runner import at_step, measure
-    from dembound.disks.reports.continuum_errors import expected_errors
     from dembound.disks.scene import build
     from dembound.disks.stability import choose_step
+    from dembound.formulas.disks.continuum import expected_errors
+    from dembound.formulas.history import loud
     from dembound.kinds import loads, with_changes
     from dembound.running import Progress
 

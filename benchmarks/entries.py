@@ -50,8 +50,8 @@ def measured(tables: Tables, motion: str) -> tuple[float, float]:
     from scipy.optimize import minimize_scalar
 
     from dembound.accuracy.runner import measure
-    from dembound.disks.entry import entries_of
     from dembound.disks.scene import build
+    from dembound.formulas.disks.entry import entries_of
     from dembound.kinds import loads
     from dembound.running import Progress
 

@@ -23,15 +23,15 @@ import tomli_w
 from error_bound_scenes import scenes
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import History, Motions, loud
 from dembound.accuracy.judges import extended
+from dembound.accuracy.of_disks.candidates import COSTLIEST
 from dembound.accuracy.of_disks.options import Built, Options
-from dembound.accuracy.of_disks.search import COSTLIEST
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
-from dembound.disks.entry import late_by
 from dembound.disks.scene import build
 from dembound.errors import DemboundError
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.history import History, Motions, loud
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
 

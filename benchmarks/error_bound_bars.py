@@ -23,10 +23,10 @@ sys.path.insert(0, str(ROOT / "tests"))
 from estimated_bars import SCENES, exact, recorded_of, scene
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.options import bar_options
 from dembound.accuracy.of_bars.search import MARGIN, Floors, Motion, affordable, cheapest, given_motion
 from dembound.casefile.bar import BarCase
+from dembound.formulas.history import History, loud
 
 BOUNDS = (0.003, 0.01, 0.03)
 

@@ -75,8 +75,8 @@ def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
 def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
     """Exact motion of a layer with a free top under the wave of its bottom, when it enters: upwards and back again."""
     from dembound.boundaries import axis_of_motion
-    from dembound.disks.entry import late_by
     from dembound.disks.scene import build
+    from dembound.formulas.disks.entry import late_by
 
     ((motion, name),) = case.driving["bottom"].items()
     wave, height = case.wave[name], case.packing.extent[1]
@@ -96,8 +96,8 @@ def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
 
     from dembound.accuracy.budget import Budget
     from dembound.accuracy.estimate import causes_of
-    from dembound.accuracy.history import History
     from dembound.accuracy.runner import measure
+    from dembound.formulas.history import History
     from dembound.kinds import loads
     from dembound.running import Progress
 

@@ -16,8 +16,8 @@ import tomli_w
 from error_bound import FINER, far_motion
 from scene_tables import ISOTROPIC, ROCK, SIDES, VISCOUS, lattice, monitors
 
-from dembound.accuracy.history import History
-from dembound.accuracy.of_disks.near import errors_near_loads
+from dembound.formulas.disks.near_loads import errors_near_loads
+from dembound.formulas.history import History
 from dembound.kinds import loads, with_changes
 from dembound.running import plan
 

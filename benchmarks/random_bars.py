@@ -27,12 +27,12 @@ from advised import advised
 from estimated_bars import recorded_of
 from small_cases import small
 
-from dembound.accuracy.history import History, loud
 from dembound.accuracy.of_bars.options import BarOption, may_break
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
+from dembound.formulas.history import History, loud
 from dembound.kinds import with_changes
 from dembound.results.compare import at_times
 

@@ -19,11 +19,11 @@ import tomli_w
 
 from dembound.api import run
 from dembound.casefile.disks import DiskCase
-from dembound.disks.entry import mass_begins
-from dembound.disks.incident_wave import Level
 from dembound.disks.scene import build
 from dembound.exact.column import Column, Layer
+from dembound.formulas.disks.entry import mass_begins
 from dembound.kinds import loads
+from dembound.kinds.disks.incident_wave import Level
 from dembound.spectra import response_spectrum, slope
 
 GRAVITY = 9.81

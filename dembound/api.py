@@ -18,14 +18,14 @@ from dembound import kinds
 from dembound.accuracy.advise import BOUNDS
 from dembound.accuracy.advise import advise as find_advice
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Truth
 from dembound.accuracy.estimate import estimate_if_asked, estimate_results
-from dembound.accuracy.judge import Advice
+from dembound.accuracy.proposal import Advice
 from dembound.boundaries import Motion
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, CaseWarning, DemboundError, NameMissingError, PackingError, RecordError, RunError
+from dembound.formulas.cause import Truth
 from dembound.results.folder import Folder
 from dembound.results.results import Arrays, Results
 from dembound.running import Progress, resume_case, run_case

@@ -6,8 +6,8 @@ from pathlib import Path
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.errors import RunError
+from dembound.formulas.first_echoes import echoes
 from dembound.machine import memory_here
-from dembound.motion.echoes import echoes
 from dembound.motion.endings import peak_rule, silent_rule
 from dembound.motion.kind import Plan
 from dembound.motion.memory import has_in_words, in_words

@@ -1,20 +1,40 @@
-"""The case files of all kinds of bodies: reading and changing them.
+"""The list of all kinds of bodies, and their case files: reading and changing them.
 
-Apart from `kinds`, only this file names the kinds. Reading, describing and listing cases does not import their runs.
+Only this file names the kinds. Reading, describing and listing cases does not import their runs.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from dembound.casefile import Case, edit, reader
 from dembound.casefile.bar import SCHEMA as BAR
 from dembound.casefile.disks import SCHEMA as DISKS
-from dembound.casefile.model import K, as_kind
+from dembound.casefile.model import K, Schema, as_kind
 
-SCHEMAS = (BAR, DISKS)
-"""The tables of each kind, in the order in which a case file is searched for them."""
+
+class Body(NamedTuple):
+    """A kind of body: the tables of its case files, and where its `Kind` and its `Judge` are, imported when needed."""
+
+    schema: Schema
+    kind: str
+    judge: str
+
+
+BODIES: Mapping[str, Body] = {
+    "bar": Body(BAR, "dembound.kinds.bar.kind:Bars", "dembound.accuracy.of_bars.judge:BarJudge"),
+    "disks": Body(DISKS, "dembound.kinds.disks.kind:Disks", "dembound.accuracy.of_disks.judge:DiskJudge"),
+}
+"""Kinds of bodies by name, in the order in which a case file is searched for their tables."""
+
+SCHEMAS = tuple(body.schema for body in BODIES.values())
+"""The tables of each kind."""
+
+
+def body_of(case: Case) -> Body:
+    """The kind of body that a case describes."""
+    return next(body for body in BODIES.values() if isinstance(case, body.schema.case))
 
 
 def load(path: Path) -> Case:

@@ -8,11 +8,11 @@ import numpy as np
 from small_cases import Tables, small
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.of_bars.causes import causes_of_bar
 from dembound.accuracy.runner import measure
 from dembound.casefile.bar import BarCase
+from dembound.formulas.cause import Causes
+from dembound.formulas.history import History, Motions
 from dembound.kinds import with_changes
 from dembound.running import Progress
 

@@ -1,7 +1,7 @@
 """Warnings of a case of disks, and changes of a bar without warnings, for tests."""
 
 from dembound.casefile import Case
-from dembound.disks.reports.warnings import disk_warnings
+from dembound.kinds.disks.warnings import disk_warnings
 from dembound.running import plan
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}

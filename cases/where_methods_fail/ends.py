@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scenes import ROCK_SPEED, bar
 
-from dembound.bar.echoes import returned
 from dembound.bar.scene import BarScene, build_bar
+from dembound.formulas.bars.ends import returned
 from dembound.motion.simulation import Simulation
 
 CELLS, SPACING = 120, 5e-3

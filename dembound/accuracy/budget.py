@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES, SIDES, TITLES, Cause, Causes, Truth, share_of
-from dembound.accuracy.history import Motions, loud
 from dembound.accuracy.repeat import Repeat
+from dembound.formulas.cause import QUANTITIES, SIDES, TITLES, Cause, Causes, Truth, share_of
+from dembound.formulas.history import Motions, loud
 from dembound.results.histories import in_words, split_in_words
 from dembound.words import percent
 

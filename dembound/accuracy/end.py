@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import Motions
-from dembound.accuracy.judge import Proposal
+from dembound.accuracy.proposal import Proposal
 from dembound.casefile import Case
 from dembound.errors import DemboundError
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
 from dembound.motion.endings import last_loud, silent_rule
 from dembound.running import plan

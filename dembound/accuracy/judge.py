@@ -4,75 +4,20 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
-from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.history import Motions
 from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.proposal import Advice
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
+from dembound.accuracy.watch import Watch
 from dembound.casefile.model import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import Motions
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
-
-
-@dataclass(frozen=True, repr=False)
-class Proposal:
-    """A choice for a case; without changes it is the case itself.
-
-    cost : predicted CPU time of its steps, s. budget : its errors, relative to the requested truth.
-    """
-
-    choice: Choice
-    cost: float
-    budget: Budget
-
-    def __repr__(self) -> str:
-        return f"<{self.choice.name}, {self.cost:.2g} s of CPU time: {self.budget.worst()}>"
-
-    @property
-    def case(self) -> Case:
-        """The case of the choice."""
-        return self.choice.case
-
-    def holds(self, bound: float) -> bool:
-        """Whether its upper error is within a bound at all monitors."""
-        share = self.budget.worst().share
-        return share.upper <= bound and not share.at_least
-
-
-class Receiver:
-    """Receives proposals as soon as they are known; the default ignores them."""
-
-    def given(self, proposal: Proposal) -> None:
-        """The errors of the case itself are known."""
-
-    def best(self, bound: float, proposal: Proposal) -> None:
-        """The best choice for an error bound is known; bounds come from the largest to the smallest."""
-
-
-@dataclass(frozen=True, repr=False)
-class Advice:
-    """Choices advised for a case.
-
-    given : the case as it is. best : by error bound the cheapest choice that keeps it, or else the choice with the
-    smallest error. Each is a proposal with ``case``, ``cost`` (CPU seconds of its steps) and ``budget``. tried : number
-    of choices whose error was computed. cpu_seconds : CPU time of the search, s.
-    """
-
-    given: Proposal
-    best: Mapping[float, Proposal]
-    tried: int
-    cpu_seconds: float = 0.0
-
-    def __repr__(self) -> str:
-        best = (f"\n  {bound:g}: {proposal}" for bound, proposal in self.best.items())
-        return f"<Advice, given: {self.given}{''.join(best)}>"
-
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -93,24 +38,16 @@ class Judge(ABC, Generic[C, S]):
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement")
 
     @abstractmethod
-    def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+    def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float, watch: Watch) -> Causes:
         """The causes of the error of a run.
 
         case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step
-        (s), work (in the unit of its kind) : of the run. most : work that may be spent.
+        (s), work (in the unit of its kind) : of the run. most : work that may be spent. watch : told of what is done.
         """
 
     def truth(self, case: C) -> Truth:
         """The truth, "disks" or "rock", to which errors of a case are relative by default."""
         return "rock"
-
-    def of_other_seeds(self, case: C, motions: Motions, seeds: int) -> Causes:
-        """The scatter of the monitors' motion between random packings, from runs with several seeds.
-
-        motions : by monitor, at the times at which it is found. Raises CaseError for a case without a seed, and the
-        errors of runs.
-        """
-        raise no_seed(case)
 
     def at_start(self, case: C, recorded: Motions, summary: Mapping[str, Any]) -> Causes:
         """Causes of the error of a run by the state in which it began, from the summary of its results; none."""
@@ -128,15 +65,17 @@ class Judge(ABC, Generic[C, S]):
         of: Truth,
         kept: Sequence[str],
         longest: float | None,
-        receiver: Receiver,
+        seeds: int,
+        watch: Watch,
     ) -> Advice:
         """The errors of a case, and the cheapest choices for several bounds.
 
         kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: the default.
-        receiver : of what is known before all is.
+        seeds : random packings that are run to find the scatter of the case's motion; 1: none. watch : told of what is
+        done, and of what is known before all is.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
-        keeps the values of `kept`; the errors of building a scene and of runs.
+        keeps the values of `kept`; for several seeds of a case without any; the errors of building a scene and of runs.
         """
 
     @abstractmethod

@@ -1,36 +1,24 @@
-"""The judges of errors of all kinds of bodies, and enlarged scenes; this file alone names the kinds."""
+"""The judges of errors of all kinds of bodies, and enlarged scenes."""
 
-from collections.abc import Callable, Mapping
 from functools import cache
+from pkgutil import resolve_name
 from typing import Any
 
 from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
 from dembound.casefile.model import Case
-from dembound.kinds import kind_of
+from dembound.schemas import body_of
 
 
 @cache
-def _of_bars() -> Judge[Any, Any]:
-    from dembound.accuracy.of_bars.judge import BarJudge
-
-    return BarJudge()
-
-
-@cache
-def _of_disks() -> Judge[Any, Any]:
-    from dembound.accuracy.of_disks.judge import DiskJudge
-
-    return DiskJudge()
-
-
-JUDGES: Mapping[str, Callable[[], Judge[Any, Any]]] = {"bar": _of_bars, "disks": _of_disks}
-"""By the name of the kind; only the one that is needed is imported."""
+def _made(place: str) -> Judge[Any, Any]:
+    """The judge at a place such as "package.module:Class"."""
+    return resolve_name(place)()
 
 
 def judge_of(case: Case) -> Judge[Any, Any]:
-    """The judge of the kind of body that a case describes."""
-    return JUDGES[kind_of(case).name]()
+    """The judge of the kind of body that a case describes; only the one that is needed is imported."""
+    return _made(body_of(case).judge)
 
 
 MOST = 8_000_000

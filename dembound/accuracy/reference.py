@@ -8,12 +8,12 @@ from typing import Generic, Literal, Protocol, TypeVar
 
 import numpy as np
 
-from dembound.accuracy.cause import Truth
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import LEAST, History, Motions, earlier, loud_of
 from dembound.accuracy.runner import Run
 from dembound.casefile import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Truth
+from dembound.formulas.history import LEAST, History, Motions, earlier, loud_of
 from dembound.results.compare import distance, largest_component, on_common_clock, peak_error, relative_error
 from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS

@@ -7,17 +7,16 @@ results are written.
 import math
 import time
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from dembound.accuracy.choice import AnyCase, digest
-from dembound.accuracy.history import History, Motions
-from dembound.accuracy.watch import current
 from dembound.casefile import Case
 from dembound.casefile.tables import ENDING
+from dembound.formulas.history import History, Motions
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
@@ -100,6 +99,11 @@ Shown = Callable[[str], AbstractContextManager[Progress]]
 """Returns the progress of a run, given its name."""
 
 
+def unseen(name: str) -> AbstractContextManager[Progress]:
+    """No progress."""
+    return nullcontext(Progress())
+
+
 class Runner:
     """Runs cases, each once.
 
@@ -108,7 +112,7 @@ class Runner:
     work : total work of its runs, in the unit of their kind of body. count : their number.
     """
 
-    def __init__(self, kept: Kept | None = None, shown: Shown = lambda name: current().run(name)) -> None:
+    def __init__(self, kept: Kept | None = None, shown: Shown = unseen) -> None:
         self.work = self.count = 0
         self._kept, self._shown = kept or InMemory(), shown
 

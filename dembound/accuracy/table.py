@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from dembound.accuracy.budget import Budget, Share
-from dembound.accuracy.cause import TITLES, Cause, Causes
-from dembound.accuracy.history import Motions
 from dembound.casefile.messages import counted
+from dembound.formulas.cause import TITLES, Cause, Causes
+from dembound.formulas.history import Motions
 from dembound.results.histories import LEAST, in_words
 from dembound.words import columns, percent
 

@@ -1,22 +1,19 @@
-"""What is being computed for an estimate or for advice, and what is known of it, for who started it.
-
-Formulas, companions and the search are far apart, so that they find the receiver in the context, as requests to end.
-"""
+"""What is being computed for an estimate or for advice, and what is known of it, for who started it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
-from contextvars import ContextVar
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 
-from dembound.accuracy.cause import Cause
-from dembound.accuracy.history import Motions
+from dembound.accuracy.proposal import Proposal
+from dembound.formulas.cause import Cause
+from dembound.formulas.history import Motions
 from dembound.interrupts import look
 from dembound.running import Progress
 
 
 class Watch:
-    """Receives what is computed; the default ignores it.
+    """Is told what is computed; the default only obeys requests to end.
 
     Attributes
     ----------
@@ -26,7 +23,8 @@ class Watch:
     part = ""
 
     def begins(self, what: str) -> None:
-        """Something that may take seconds begins."""
+        """Something that may take seconds begins; overriding methods call this one, which looks for requests to end."""
+        look()
 
     def run(self, what: str) -> AbstractContextManager[Progress]:
         """The progress of a companion that begins."""
@@ -35,26 +33,8 @@ class Watch:
     def knows(self, causes: Sequence[Cause], motions: Motions, missing: str) -> None:
         """Causes are known, of these motions by monitor, while others are still missing, given in words."""
 
+    def given(self, proposal: Proposal) -> None:
+        """The errors of the case itself are known."""
 
-_current: ContextVar[Watch | None] = ContextVar("_current", default=None)
-
-
-def current() -> Watch:
-    """The receiver in this context."""
-    return _current.get() or Watch()
-
-
-@contextmanager
-def watched_by(watch: Watch) -> Iterator[None]:
-    """Inside, a receiver hears of all that is computed."""
-    token = _current.set(watch)
-    try:
-        yield
-    finally:
-        _current.reset(token)
-
-
-def begins(what: str) -> None:
-    """Inform the receiver that something begins, after looking for requests to end."""
-    look()
-    current().begins(what)
+    def best(self, bound: float, proposal: Proposal) -> None:
+        """The best choice for an error bound is known; bounds come from the largest to the smallest."""

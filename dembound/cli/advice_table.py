@@ -3,25 +3,24 @@
 import textwrap
 from collections.abc import Sequence
 
-from dembound.accuracy.judge import Proposal, Receiver
+from dembound.accuracy.proposal import Proposal
 from dembound.accuracy.table import WIDTH, lines_of
-from dembound.casefile import Case
 from dembound.cli.console import out
-from dembound.cli.progress import Watching
+from dembound.cli.progress import Shown, Watching
 from dembound.words import percent, with_unit
 
 
-class Table(Receiver):
-    """Prints the errors of a case, and the cheapest choice for each bound, as soon as they are known."""
+class Table(Watching):
+    """Shows what is computed, and prints errors of a case and the cheapest choice by bound, once known."""
 
-    def __init__(self, case: Case, bounds: Sequence[float], watching: Watching) -> None:
-        self._case, self._left, self._watching = case, sorted(bounds, reverse=True), watching
-        self._before = ""
+    def __init__(self, bounds: Sequence[float], name: str, shown: Shown) -> None:
+        super().__init__(name, shown)
+        self._left, self._before = sorted(bounds, reverse=True), ""
 
     def given(self, proposal: Proposal) -> None:
         """Print the errors of the case, and the head of the table of choices."""
         self._print(
-            f"{self._case.name}: its steps take about {with_unit(proposal.cost, 's', 2)}",
+            f"{self.name}: its steps take about {with_unit(proposal.cost, 's', 2)}",
             *lines_of(proposal.budget),
             "",
             "   requested  predicted  at most      time   what changes",
@@ -42,7 +41,7 @@ class Table(Receiver):
     def _print(self, *lines: str) -> None:
         """Print lines of at most 80 characters."""
         left = ", ".join(percent(each, 3) for each in self._left)
-        self._watching.missing = f"the cheapest choices within {left}" if left else "nothing"
-        with self._watching.shown.aside():
+        self.missing = f"the cheapest choices within {left}" if left else "nothing"
+        with self.shown.aside():
             for line in lines:
                 out.print(line, markup=False, soft_wrap=True)

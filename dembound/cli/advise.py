@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -15,7 +16,7 @@ from dembound.errors import CaseError, NotAccurateError
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
-    from dembound.accuracy.judge import Advice, Proposal
+    from dembound.accuracy.proposal import Advice, Proposal
     from dembound.casefile import Case
 
 
@@ -110,8 +111,7 @@ def advise_cases(
     missed = []
     for number, path in enumerate(cases):
         case = load_case(path, changes)
-        with watched(case.name) as watching:
-            table = Table(case, bounds, watching)
+        with watched(case.name, partial(Table, bounds)) as table:
             found = advise(case, bounds, of, kept, seeds, longest, table)
         _print(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
         if bound is None:
@@ -160,7 +160,7 @@ def chosen(
 
     with watched(case.name) as watching:
         watching.missing = f"the cheapest choice within {percent(bound, 3)}; nothing has been run"
-        found = advise(case, (bound,), kept=_kept(keep, changes), longest=longest)
+        found = advise(case, (bound,), kept=_kept(keep, changes), longest=longest, watch=watching)
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))

@@ -43,8 +43,8 @@ def estimate(
     for path in results:
         try:
             folder = with_name(results_file(path)).parent
-            with watched(folder.name):
-                found = estimate_results(folder, repeat)
+            with watched(folder.name) as watching:
+                found = estimate_results(folder, repeat, watching)
             _show(folder, found)
         except CaseError as error:
             problems += [line for line in str(error).splitlines() if line not in problems]
@@ -59,8 +59,8 @@ def print_estimate(folder: Path) -> None:
     from dembound.cli.progress import watched
 
     try:
-        with watched(folder.name):
-            found = estimate_results(folder)
+        with watched(folder.name) as watching:
+            found = estimate_results(folder, watch=watching)
         _show(folder, found)
     except DemboundError as error:
         err.print(f"{folder.name}: errors are not estimated: {error}")

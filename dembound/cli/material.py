@@ -131,8 +131,8 @@ def material(
         return
     if given := [*(["--seeds"] if seeds != SEEDS else []), *loading.given]:
         raise CaseError([f"{', '.join(given)}: for tests of samples, give --ucs or --tension"])
-    from dembound.disks.reports.micro_macro import describe_materials, material_rows, materials_of, packing_line
     from dembound.disks.scene import build
+    from dembound.kinds.disks.micro_macro import describe_materials, material_rows, materials_of, packing_line
 
     scene = build(load_disks(case, changes))
     found = describe_materials(scene)

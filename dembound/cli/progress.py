@@ -10,12 +10,12 @@ from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemai
 from rich.progress import Progress as RichProgress
 from rich.text import Text
 
-from dembound.accuracy.cause import Cause
-from dembound.accuracy.history import Motions
 from dembound.accuracy.table import in_one_line
-from dembound.accuracy.watch import Watch, watched_by
+from dembound.accuracy.watch import Watch
 from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, err
+from dembound.formulas.cause import Cause
+from dembound.formulas.history import Motions
 from dembound.interrupts import exit_code_of
 from dembound.motion.trackers import Run
 from dembound.running import Progress
@@ -71,6 +71,7 @@ class Watching(Watch):
 
     def begins(self, what: str) -> None:
         """Show what begins, after the part of the whole that it belongs to."""
+        super().begins(what)
         self.shown.begin(": ".join(filter(None, (self.name, self.part, what))))
 
     @contextmanager
@@ -87,13 +88,15 @@ class Watching(Watch):
 
 
 @contextmanager
-def watched(name: str) -> Iterator[Watching]:
-    """The receiver of an estimate or of advice about the case of that name; a request to end says what is missing."""
+def watched(name: str, made: Callable[[str, Shown], Watching] = Watching) -> Iterator[Watching]:
+    """The watch of an estimate or of advice about the case of that name; a request to end says what is missing.
+
+    made : makes it from the name and its progress.
+    """
     with progress_of(name) as shown:
-        watching = Watching(name, shown)
+        watching = made(name, shown)
         try:
-            with watched_by(watching):
-                yield watching
+            yield watching
         except KeyboardInterrupt as stop:
             err.print(f"{name}: stopped; missing: {watching.missing}")
             raise typer.Exit(exit_code_of(stop)) from None

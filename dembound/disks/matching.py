@@ -1,13 +1,11 @@
 """How well the supports of a side match the packing, from its homogenised stiffness, without running a wave."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries import Motion, axis_of_motion
+from dembound.boundaries import Motion
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.description import reflected
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.disks.scene import DiskScene
 from dembound.disks.sides import media_of
@@ -99,23 +97,3 @@ class Held(NamedTuple):
                 for values in (table.damping, table.stiffness)
             )
         )
-
-
-def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float, part: int = 0) -> float:
-    """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
-
-    From the impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the
-    packing, over the packing's impedance. At frequency nan of dashpots only. nan where the motion is held.
-    part : number in `media_of`.
-    """
-    (edge, medium), held = media_of(scene, side)[part], Held.of(scene, side, part)
-    axis = axis_of_motion(side, motion)
-    own = medium.density * medium.running_speeds[0 if motion == "p" else 1]
-    if not own > 0.0:
-        return math.nan
-    impedance = complex(held.damping[axis])
-    if math.isfinite(frequency):
-        omega = 2.0 * math.pi * frequency
-        half = 0.0 if scene.case.side(side).half_cells else 0.5 * medium.density * float(edge.diameters.mean())
-        impedance += 1j * omega * half - 1j * float(held.stiffness[axis]) / omega
-    return abs(reflected(impedance / own, 1.0))

@@ -1,4 +1,4 @@
-"""The interface of a kind of body to runs, checks and reports; kinds.py lists the kinds."""
+"""The interface of a kind of body to runs, checks and reports; schemas.py lists the kinds."""
 
 from __future__ import annotations
 

@@ -20,10 +20,10 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.incident import not_level
 from dembound.casefile.model import as_kind
 from dembound.casefile.reader import parsed
-from dembound.disks.incident_wave import Level, Modulus
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.kinds.disks.incident_wave import Level, Modulus
 from dembound.records.processing import Motion as Recorded
 from dembound.records.processing import integrated
 from dembound.waves.wave import FADED, amplitude_spectrum, faded_frequency

@@ -14,12 +14,12 @@ import pytest
 from small_cases import small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import loud
 from dembound.accuracy.judges import extended
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.edit import edited
 from dembound.errors import DemboundError
+from dembound.formulas.history import loud
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
 

@@ -21,9 +21,9 @@ from dembound.continuum.medium import Medium
 from dembound.continuum.mesh import Around, Mesh
 from dembound.continuum.part import GridBody
 from dembound.disks.contacts.layout import contact_rows
-from dembound.disks.kind import Disks
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
+from dembound.kinds.disks.kind import Disks
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
@@ -182,7 +182,7 @@ def bar() -> Callable[..., Case]:
 @pytest.fixture
 def unstable() -> Callable[[], AbstractContextManager[None]]:
     """Makes a context in which disks run with twice their largest stable step."""
-    from dembound.disks import kind
+    from dembound.kinds.disks import kind
 
     @contextmanager
     def with_long_steps() -> Iterator[None]:

@@ -1,9 +1,9 @@
 """Checks of a case, without running it."""
 
-from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
-from dembound.disks.reports.facts import disk_facts
 from dembound.errors import RunError
+from dembound.kinds.bar.facts import bar_facts
+from dembound.kinds.disks.facts import disk_facts
 from dembound.motion.memory import in_words
 from dembound.running import plan, warnings_before
 from dembound.words import with_unit

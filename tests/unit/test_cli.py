@@ -82,7 +82,7 @@ COMMANDS = (
 
 
 @pytest.mark.parametrize(
-    ("start", "unused"), [(starting.DEFAULT, "dembound.bar.kind"), ("rock_bar", "dembound.disks.kind")]
+    ("start", "unused"), [(starting.DEFAULT, "dembound.kinds.bar.kind"), ("rock_bar", "dembound.kinds.disks.kind")]
 )
 def test_commands_import_only_what_they_use(tmp_path, start: str, unused: str) -> None:
     check = (["check", "first.toml"], FIGURES | SIGNALS | {"h5py", unused})

@@ -5,9 +5,9 @@ import pytest
 from small_cases import small
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.reports.beside_wave import taken_from_waves
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
+from dembound.formulas.disks.beside_wave import taken_from_waves
 from dembound.motion.simulation import Simulation
 from dembound.results.compare import relative_error
 

@@ -7,11 +7,11 @@ incident S waves up to 25 Hz. Half cells begin where their dashpots act, D/2 abo
 import numpy as np
 import tomli_w
 
-from dembound.disks.entry import mass_begins
-from dembound.disks.incident_wave import Level
 from dembound.disks.scene import build
 from dembound.exact.column import Column, Layer
+from dembound.formulas.disks.entry import mass_begins
 from dembound.kinds import loads
+from dembound.kinds.disks.incident_wave import Level
 
 GRAVITY = 9.81
 SOIL, ROCK = 20e3 / GRAVITY, 25e3 / GRAVITY

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks.packing_errors import lattice_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.surroundings.settings import signals_of
+from dembound.formulas.disks.continuum import lattice_errors
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
 

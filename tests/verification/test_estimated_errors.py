@@ -15,11 +15,11 @@ import pytest
 from small_cases import Tables, small
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.history import History
 from dembound.accuracy.judges import extended
 from dembound.accuracy.runner import measure
+from dembound.formulas.cause import SIDES
+from dembound.formulas.history import History
 from dembound.running import Progress
 
 SPRINGS: Tables = {"type": "viscoelastic", "alpha_n": 1.0, "alpha_s": 0.5, "source": [0.0, 20.0]}

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import tomli_w
 
-from dembound.disks.entry import late_by, mass_begins
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.column import Column, Layer
+from dembound.formulas.disks.entry import late_by, mass_begins
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
 

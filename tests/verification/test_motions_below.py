@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import tomli_w
 
-from dembound.disks.incident_wave import Level
-from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.exact.column import Column, Layer
 from dembound.kinds import loads
+from dembound.kinds.disks.incident_wave import Level
+from dembound.kinds.disks.kind import Disks
 from dembound.studies.deconvolution import incident_below, level_ground
 
 ROCK = {"density": 2400.0, "p_wave_speed": 1100.0, "s_wave_speed": 672.0}

@@ -17,13 +17,13 @@ from small_cases import Tables, small
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import CONTINUUM, SIDES
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.history import History
 from dembound.accuracy.judges import extended, judge_of
 from dembound.accuracy.runner import measure
 from dembound.casefile import Case
+from dembound.formulas.cause import CONTINUUM, SIDES
+from dembound.formulas.history import History
 from dembound.running import Progress, plan
 
 ROCK: Tables = {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5, "kratio": 0.5, "pb_kratio": 0.5}

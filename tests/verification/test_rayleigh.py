@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.entry import late_by
-from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step, step_limit
 from dembound.disks.trials import trials_of_disks
 from dembound.exact.column import Column, Layer
+from dembound.formulas.disks.entry import late_by
 from dembound.kinds import loads, with_changes
+from dembound.kinds.disks.kind import Disks
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.studies.noise import short_run

@@ -14,11 +14,11 @@ from grid_scene import GridScene, step_limit
 from dembound.continuum.medium import Layered, Medium
 from dembound.continuum.mesh import Around, Mesh
 from dembound.continuum.part import GridBody
-from dembound.disks.kind import Disks
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
+from dembound.kinds.disks.kind import Disks
 from dembound.motion import threads
 from dembound.motion.endings import Peak, peak_rule
 

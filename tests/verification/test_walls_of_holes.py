@@ -8,8 +8,8 @@ import pytest
 from scene_tables import grains, lattice
 from walls import QUANTITIES, RADII, exact, key, motions, row, scene
 
-from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
 from dembound.disks.scene import build
+from dembound.formulas.disks.walls import WALL_FACTOR, wall_errors
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import grains
 import numpy as np
 import pytest
 
-from dembound.disks.reports.warnings import LARGEST_PULL
 from dembound.disks.stability import OPENING
+from dembound.kinds.disks.warnings import LARGEST_PULL
 
 pytestmark = pytest.mark.slow
 

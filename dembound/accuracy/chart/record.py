@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError, RecordError
 from dembound.files import make_folder, remove, require_no_link, require_writable
+from dembound.formulas.history import History, Motions
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
 from dembound.results.reader import finite, increasing, open_record, text_of, understood

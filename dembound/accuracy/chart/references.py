@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES as OF_SIDES
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, label
-from dembound.accuracy.history import Motions
 from dembound.accuracy.judges import MOST, extended, judge_of
 from dembound.accuracy.reference import Exact, FinerRun, Reference
 from dembound.accuracy.runner import Run
@@ -20,6 +17,9 @@ from dembound.boundaries import SIDES as SIDE_NAMES
 from dembound.casefile import Case
 from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
+from dembound.formulas.cause import SIDES as OF_SIDES
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
 from dembound.motion.kind import Finding
 from dembound.table import Box

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import TITLES, Truth
 from dembound.accuracy.chart.front import EQUAL, NONE, Point, cheapest_within, front, points_of
 from dembound.accuracy.chart.record import Record, record_in
 from dembound.accuracy.chart.references import exact_of, reference_of
@@ -19,6 +18,7 @@ from dembound.casefile.messages import counted
 from dembound.casefile.model import Case
 from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
+from dembound.formulas.cause import TITLES, Truth
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
 from dembound.table import Box

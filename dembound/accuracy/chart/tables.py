@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.accuracy.cause import TITLES
 from dembound.accuracy.chart.record import write_motions
 from dembound.accuracy.chart.study import Charted, Line
 from dembound.accuracy.choice import digest
+from dembound.formulas.cause import TITLES
 from dembound.results.committed import changed_file
 from dembound.results.text_files import write_csv
 from dembound.version import __version__

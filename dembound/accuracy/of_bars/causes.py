@@ -2,12 +2,12 @@
 
 Up to the first change of its bonds a bar is linear, and its motion is known at every frequency, without a run:
 
-- own: the bar as it is stepped, with its own ends (chain.py).
+- own: the bar as it is stepped, with its own ends (formulas/bars/chain.py).
 - endless: the same nodes and steps, but beyond an absorbing end the bar goes on, and the wave that enters there is the
   one that the case gives.
 - exact time: the endless bar with Δt = 0.
-- exact: rods without nodes (rods.py), whose absorbing ends absorb everything. The stress of a node at an end is taken
-  half a spacing inside, and compared with the exact stress there.
+- exact: rods without nodes (formulas/bars/rods.py), whose absorbing ends absorb everything. The stress of a node at an
+  end is taken half a spacing inside, and compared with the exact stress there.
 
 The difference own − endless is the error of the ends, endless − exact time the error of the time step, exact time −
 exact the error of the grid. So all reflections are included, also of ends softer than the bar, and losses at
@@ -30,13 +30,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.accuracy.cause import GRID, SIDES, STEP, Cause, Causes
-from dembound.accuracy.history import History, Motions
-from dembound.accuracy.of_bars.motions import BarMotions
-from dembound.accuracy.of_bars.rods import Window
-from dembound.bar.echoes import WIDEST
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
+from dembound.formulas.bars.ends import WIDEST
+from dembound.formulas.bars.motions import BarMotions
+from dembound.formulas.bars.rods import Window
+from dembound.formulas.cause import GRID, SIDES, STEP, Cause, Causes
+from dembound.formulas.history import History, Motions
 from dembound.words import percent
 
 UNEXPLAINED = 1.0 / 3.0

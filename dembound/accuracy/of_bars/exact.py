@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.accuracy.cause import QUANTITIES
-from dembound.accuracy.history import LEAST, History, Motions, along
-from dembound.accuracy.of_bars.motions import FINER, BarMotions, places_of
 from dembound.accuracy.of_bars.options import FACTORS
-from dembound.accuracy.of_bars.rods import Window
 from dembound.accuracy.reference import Exact
 from dembound.bar.banded import ROUNDING
-from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
 from dembound.bar.stability import own_step
 from dembound.casefile.bar.model import BarCase
 from dembound.exact.bar import End, bar_stress, bar_velocity, triangle_spall
+from dembound.formulas.bars.motions import FINER, BarMotions, places_of
+from dembound.formulas.bars.rods import Window
+from dembound.formulas.cause import QUANTITIES
+from dembound.formulas.history import LEAST, History, Motions, along
+from dembound.kinds.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 

@@ -9,17 +9,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.history import History, Motions
-from dembound.accuracy.judge import Advice, Judge, Receiver
+from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
 from dembound.accuracy.of_bars.causes import causes_of_bar
 from dembound.accuracy.of_bars.exact import PulseInBar
 from dembound.accuracy.of_bars.options import bar_choices
 from dembound.accuracy.of_bars.search import advice_for_bar
+from dembound.accuracy.proposal import Advice
 from dembound.accuracy.runner import STEP_AND_END, Run
-from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
+from dembound.accuracy.watch import Watch
 from dembound.bar.linear_steps import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
@@ -27,6 +26,9 @@ from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.model import Case
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import History, Motions
+from dembound.kinds.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.motion.endings import monitored
 from dembound.motion.paths import plane_needed
 from dembound.places import nearest_number
@@ -145,7 +147,9 @@ class BarJudge(Judge[BarCase, BarScene]):
     first_break = SPALL_TIME
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 
-    def causes(self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+    def causes(
+        self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch
+    ) -> Causes:
         """Errors of ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 
@@ -156,10 +160,11 @@ class BarJudge(Judge[BarCase, BarScene]):
         of: Truth,
         kept: Sequence[str],
         longest: float | None,
-        receiver: Receiver,
+        seeds: int,
+        watch: Watch,
     ) -> Advice:
         """The cheapest nodes, steps and absorbing ends."""
-        return advice_for_bar(case, bounds, kept, longest, receiver)
+        return advice_for_bar(case, bounds, kept, longest, seeds, watch)
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""

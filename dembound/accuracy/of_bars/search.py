@@ -11,20 +11,22 @@ from functools import cached_property
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.history import History, Motions
-from dembound.accuracy.judge import Advice, Proposal, Receiver
+from dembound.accuracy.judge import no_seed
 from dembound.accuracy.of_bars.causes import EQUAL, FACTOR, HOW, QUIET, difference, largest_motion, not_linear, split
 from dembound.accuracy.of_bars.exact import ExactMotion
-from dembound.accuracy.of_bars.motions import AT_PLACE, BarMotions
 from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
-from dembound.accuracy.of_bars.rods import Window
+from dembound.accuracy.proposal import Advice, Proposal
+from dembound.accuracy.watch import Watch
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
+from dembound.formulas.bars.motions import AT_PLACE, BarMotions
+from dembound.formulas.bars.rods import Window
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import History, Motions
 from dembound.methods.rod import Range
 from dembound.results.compare import at_times
 from dembound.results.histories import in_words
@@ -121,12 +123,12 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 
 
 def advice_for_bar(
-    case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None, receiver: Receiver
+    case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None, seeds: int, watch: Watch
 ) -> Advice:
     """The errors of a bar, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: `COSTLIEST`.
-    receiver : of what is known before all is.
+    seeds : more than 1 are refused. watch : told of what is known before all is.
 
     Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
     keeps the values of `kept`; the errors of building a scene.
@@ -137,7 +139,9 @@ def advice_for_bar(
     if not own.moves:
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
     given = Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget)
-    receiver.given(given)
+    if seeds > 1:
+        raise no_seed(case)
+    watch.given(given)
     motions = affordable(own, bar_options(case, kept), longest)
     if bounds and not motions:
         raise CaseError(["advise: no choice keeps the values of --keep, --set and --longest"], case.name)
@@ -150,7 +154,7 @@ def advice_for_bar(
             words += ALONG + (_otherwise(own, bound, kept, longest) if not motion.holds(bound) else "")
         found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
         best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
-        receiver.best(bound, best[bound])
+        watch.best(bound, best[bound])
     return Advice(given, best, tried)
 
 

@@ -8,19 +8,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
-from dembound.accuracy.history import Motions
-from dembound.accuracy.of_disks.companions import Companions, is_moved
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.held_sides import HeldSides
-from dembound.accuracy.of_disks.kinks import causes_of_kinks
-from dembound.accuracy.of_disks.rest import REST, causes_of_rest
-from dembound.accuracy.watch import current
+from dembound.accuracy.of_disks.misplaced import errors_of_held_side, errors_of_places, is_moved
+from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
+from dembound.accuracy.runner import Runner
+from dembound.accuracy.watch import Watch
 from dembound.casefile.disks import DiskCase
-from dembound.disks.entry import late_by
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
+from dembound.formulas.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.held_sides import HeldSides
+from dembound.formulas.disks.kinks import causes_of_kinks
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.disks.rest import REST, causes_of_rest
+from dembound.formulas.history import Motions
 from dembound.results.compare import at_times
 
 LEAST_LATE = 1e-4
@@ -46,20 +50,23 @@ CONTACTS_FACTOR = 1.8
 as large as found by larger disks, two above 1.8 (lattices and random packings, friction of 0.2 and 0.6)."""
 
 
-def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+def causes_of_run(
+    case: DiskCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch | None = None
+) -> Causes:
     """The causes of the error of a run, from the far companion's motion if there is one, else from the recorded motion.
 
     case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
-    particle-steps that companions may take.
+    particle-steps that companions may take. watch : told of what is done.
     """
-    scene = build(case)
+    scene, watch = build(case), watch or Watch()
+    companions = Companions(case, scene, time_step, most, Runner(shown=watch.run), Reflections(watch.begins))
+    formulas = Formulas(scene, time_step, companions.reflections)
     moved = " and ".join(sides_of_pair(case)) if case.monitor else ""
     reason = ""
     if moved and (case.ground.size is not None or case.incident is not None):
         reason = f"of {moved}: beside a continuum no companions are run"
     elif moved:
-        _tell(Formulas(scene, time_step).causes(recorded), scene, recorded)
-        companions = Companions(case, scene, time_step, most)
+        _tell(watch, formulas.causes(recorded), scene, recorded)
         try:
             companions.require_affordable()
             found = causes_of_choice(companions, scene, time_step, 0.0)
@@ -67,32 +74,32 @@ def causes_of_run(case: DiskCase, recorded: Motions, time_step: float, work: flo
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
     unknown = [Cause.unknown(SIDES, reason)] if reason else []
-    known, cost = _of_ground_of_run(case, scene, recorded, time_step, most)
+    known, cost = _of_ground_of_run(companions, formulas, recorded, watch)
     return Causes([*unknown, *known], _not_counted(scene), entry_notes(scene), cost / work)
 
 
-def _tell(causes: Sequence[Cause], scene: DiskScene, motions: Motions) -> None:
-    """Inform the receiver of the causes found by formula, before companions are run; motions : by monitor."""
+def _tell(watch: Watch, causes: Sequence[Cause], scene: DiskScene, motions: Motions) -> None:
+    """Tell of the causes found by formula, before companions are run; motions : by monitor."""
     missing = [SIDES] if sides_of_pair(scene.case) else []
     missing += [f"{side} side" for side in HeldSides(scene).among_others]
     missing += [f"{STEP} where contacts open or slide"] if scene.has_history else []
     if missing:
-        current().knows(causes, motions, f"errors from companions ({', '.join(missing)})")
+        watch.knows(causes, motions, f"errors from companions ({', '.join(missing)})")
 
 
 def _of_ground_of_run(
-    case: DiskCase, scene: DiskScene, recorded: Motions, time_step: float, most: float
+    companions: Companions, formulas: Formulas, recorded: Motions, watch: Watch
 ) -> tuple[list[Cause], float]:
     """All causes but artificial sides, at the recorded times, and the work (particle-steps) of their companions.
 
     Companions are needed for monitors and loads that are not at their places, for sides that hold disks, and for
-    contacts that open or slide. The causes are those of `of_ground` but for kinks, which a recorded motion contains.
+    contacts that open or slide. The causes are those of `ground_causes` but for kinks, which records have.
     """
-    known = Formulas(scene, time_step).causes(recorded)
+    case, scene, time_step = companions.case, companions.scene, companions.time_step
+    known = formulas.causes(recorded)
     sides = HeldSides(scene).among_others
     if not case.monitor:
         return known, 0.0
-    companions = Companions(case, scene, time_step, most)
     at = {name: own.time for name, own in recorded.items()}
     places = _places(companions, scene, at)
     if not (sides or scene.has_history):
@@ -101,7 +108,7 @@ def _of_ground_of_run(
     if case.ground.size is not None or case.incident is not None:
         reason = "beside a continuum no companions are run"
     else:
-        _tell(known, scene, recorded)
+        _tell(watch, known, scene, recorded)
         try:
             companions.require_affordable()
             time = next(iter(companions.far.values())).time
@@ -127,7 +134,7 @@ def _places(companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarra
         return Cause(PLACES, AT_PLACES, {name: dict.fromkeys(MOTIONS, 0.0) for name in at}, of_disks=True)
     try:
         companions.require_affordable()
-        found, time = companions.moved(scene), next(iter(companions.far.values())).time
+        found, time = errors_of_places(companions, scene), next(iter(companions.far.values())).time
     except DemboundError as error:
         return Cause.unknown(PLACES, "; ".join(str(error).splitlines()), of_disks=True)
     return _at_times(Cause(PLACES, MOVED, found, of_disks=True, factor=USUAL), time, at)
@@ -168,7 +175,7 @@ def causes_of_choice(
 ) -> Causes:
     """The causes of the error of a choice, from the far companion's motion; see `Companions.of_sides`.
 
-    ground : the result of `of_ground`, if known.
+    ground : the result of `ground_causes`, if known.
     """
     ground = ground or ground_causes(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))
@@ -178,18 +185,20 @@ def causes_of_choice(
     return found
 
 
-def ground_causes(companions: Companions, scene: DiskScene, time_step: float, *, told: bool = False) -> list[Cause]:
+def ground_causes(
+    companions: Companions, scene: DiskScene, time_step: float, watch: Watch | None = None
+) -> list[Cause]:
     """All causes of the error of a choice but artificial sides, which would need companions of its own.
 
-    told : whether the receiver is informed of those by formula as soon as they are known.
+    watch : told of those by formula as soon as they are known.
     """
     motions = companions.recorded(scene)
-    places = Cause(PLACES, MOVED, companions.moved(scene), of_disks=True, factor=USUAL)
-    formulas = Formulas(scene, time_step)
-    kinks = causes_of_kinks(formulas, motions, companions.diameter)
+    places = Cause(PLACES, MOVED, errors_of_places(companions, scene), of_disks=True, factor=USUAL)
+    formulas = Formulas(scene, time_step, companions.reflections)
+    kinks = causes_of_kinks(formulas.dispersion, motions, companions.diameter)
     known = formulas.causes(motions)
-    if told:
-        _tell(known, scene, motions)
+    if watch is not None:
+        _tell(watch, known, scene, motions)
     known = _with_steps_of_contacts(known, companions, scene, time_step)
     return [*known, *kinks, places, *_held(companions, scene)]
 
@@ -197,7 +206,7 @@ def ground_causes(companions: Companions, scene: DiskScene, time_step: float, *,
 def rest_causes(companions: Companions, scene: DiskScene) -> Causes:
     """The errors of a choice by its static stage, which ends as that of the given case or its companion."""
     try:
-        static = companions.settled
+        static = settled_of(companions)
     except DemboundError as error:
         return Causes([Cause.unknown(REST, "; ".join(str(error).splitlines()))])
     return Causes([]) if static is None else causes_of_rest(scene, companions.recorded(scene), static)
@@ -214,7 +223,7 @@ def _with_steps_of_contacts(
         return causes
     words = "by runs with half the step, as contacts open or slide"
     try:
-        parts = companions.of_steps(scene, time_step)
+        parts = errors_of_steps(companions, scene, time_step)
     except DemboundError as error:
         found = Cause.unknown(STEP, f"{words}: {'; '.join(str(error).splitlines())}")
     else:
@@ -229,7 +238,7 @@ def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
     for side in HeldSides(scene).among_others:
         words = "by companions whose disks are held elsewhere"
         try:
-            parts = companions.of_held(scene, side)
+            parts = errors_of_held_side(companions, scene, side)
         except DemboundError as error:
             yield Cause.unknown(f"{side} side", HELD.format("; ".join(str(error).splitlines())), True)
         else:

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
-from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.boundaries import Boundary
 from dembound.boundaries.intact import Keeping
 from dembound.casefile.disks import DiskCase
@@ -32,6 +31,8 @@ from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.disks.waves import is_square_lattice
 from dembound.laws import Moduli
 from dembound.packings.square import Square
 from dembound.table import Box
@@ -71,11 +72,13 @@ class Coarser:
         return with_whole_cells(self.case)
 
 
-def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> Coarser:
+def coarser(
+    case: DiskCase, scene: DiskScene, time_step: float, diameter: float, reflections: Reflections | None = None
+) -> Coarser:
     """The case with a square lattice of about this diameter (m); scene, time_step (s) : of the case.
 
     Places move with the sides, by less than half a diameter, as the scene then is whole cells wide and high. Nothing
-    but histories is recorded.
+    but histories is recorded. reflections : of sides, measured before.
 
     Raises the errors of building a scene.
     """
@@ -99,7 +102,7 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         name=f"{case.name}_coarser",
     )
     larger = replace(larger, boundary={side: _as_deep(case, side, scene, cell) for side in case.boundary})
-    boundary, weight = equal_sides(larger, scene, time_step)
+    boundary, weight = equal_sides(larger, scene, time_step, reflections or Reflections())
     return Coarser(replace(larger, boundary=boundary), weight)
 
 

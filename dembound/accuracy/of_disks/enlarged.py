@@ -23,6 +23,7 @@ from dembound.disks.stability import choose_step
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.settings import signals_of
 from dembound.errors import CaseError
+from dembound.formulas.disks.reflections import Reflections
 from dembound.holes.hole import Hole
 from dembound.holes.rectangle import Rectangle
 from dembound.motion.endings import monitored
@@ -244,13 +245,15 @@ class Pair:
         return sum(map(_work, self.scenes))
 
 
-def pair_of(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
+def pair_of(
+    case: DiskCase, scene: DiskScene, time_step: float, most: float, reflections: Reflections | None = None
+) -> Pair:
     """The pair of a case that costs at most so many particle-steps, if this is possible, else the cheapest one.
 
-    scene, time_step (s) : of the case. Raises CaseError if no side can move.
+    scene, time_step (s) : of the case. reflections : of sides, measured before. Raises CaseError if no side can move.
     """
     for ratio in ratios(case, scene):
-        given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
+        given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter, reflections)
         pair = _with_far_sides(given, ratio, most)
         if _work(pair.smaller) + _work(pair.larger) <= most:
             break

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.of_disks.matched_sides import Reflected, factor_for, reflected
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, normal_axis
 from dembound.boundaries.intact import Keeping
@@ -20,6 +19,7 @@ from dembound.disks.matching import Held, homogenised_beta, per_metre, supports_
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.sides import ground_at, media_of, medium_of_side
 from dembound.errors import CaseError
+from dembound.formulas.disks.reflections import Reflected, Reflections, factor_for
 
 EVEN = 1e-6
 """Largest relative difference between numbers that count as equal: rounding."""
@@ -99,7 +99,9 @@ EQUAL = 1e-3
 differ by so much reflect half as much more or less."""
 
 
-def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dict[str, Boundary], float]:
+def equal_sides(
+    case: DiskCase, scene: DiskScene, time_step: float, reflections: Reflections
+) -> tuple[dict[str, Boundary], float]:
     """Sides of a coarser case that reflect as much, with springs as stiff, as those of the scene of the finer case.
 
     time_step : s, of the finer case. Also returns `Coarser.weight`. Raises CaseError for dampers, springs or forces of
@@ -109,9 +111,9 @@ def equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> tuple[dic
     plain = scene.case.boundary
     case = replace(case, boundary={side: _as_deep(plain[side], table) for side, table in case.boundary.items()})
     own = build(case)
-    shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
+    shares = {side: reflections.of(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
     halved = {side: found for side, found in shares.items() if _may_be_whole(case.boundary[side])}
-    weight = _weight_of_mass(halved, build(with_whole_cells(case)), time_step)
+    weight = _weight_of_mass(halved, build(with_whole_cells(case)), time_step, reflections)
     boundary = {side: _equal_supports(table, side, own, scene) for side, table in case.boundary.items()}
     boundary |= {
         side: _equal_dashpots(boundary[side], side, found, weight > 0.0, own) for side, found in shares.items()
@@ -139,7 +141,9 @@ def _may_be_whole(table: Boundary) -> bool:
     return table.may_halve and not table.waves and not table.is_interface
 
 
-def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:
+def _weight_of_mass(
+    shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float, reflections: Reflections
+) -> float:
     """Out-of-phase reflection of a finer scene's sides over that of whole cells of the lattice, see `coarser.Coarser`.
 
     time_step : s, stable with larger disks too. Mean over sides and motions; 0 where the dashpots reflect more in
@@ -148,7 +152,7 @@ def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: Dis
     finer = [share for both in shares.values() for share in both.values()]
     if sum(share.out_of_phase**2 for share in finer) <= sum(share.dashpots**2 for share in finer):
         return 0.0
-    coarse = {side: reflected(whole, side, time_step) for side in shares}
+    coarse = {side: reflections.of(whole, side, time_step) for side in shares}
     ratios = [
         share.out_of_phase / coarse[side][motion].out_of_phase
         for side, both in shares.items()

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Causes, Truth
 from dembound.accuracy.choice import OWN, Choice, Named
-from dembound.accuracy.history import Motions
-from dembound.accuracy.judge import Advice, Judge, Proposal, Receiver
+from dembound.accuracy.judge import Judge
 from dembound.accuracy.moved_sides import Extended
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates
 from dembound.accuracy.of_disks.causes import (
     causes_of_choice,
     causes_of_run,
@@ -27,19 +26,23 @@ from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.enlarged import extended_disks
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLayeredColumn, ExactPlaneWave
-from dembound.accuracy.of_disks.formulas import Formulas
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.rest import causes_of_rest
-from dembound.accuracy.of_disks.search import CUT, LONGEST, Search, before_breaks
+from dembound.accuracy.of_disks.search import Search, before_breaks
 from dembound.accuracy.of_disks.seeds import cause_of_packing
+from dembound.accuracy.proposal import Advice, Proposal
 from dembound.accuracy.reference import Exact
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
-from dembound.accuracy.watch import begins, current
+from dembound.accuracy.watch import Watch
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
+from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.disks.rest import causes_of_rest
+from dembound.formulas.history import Motions
 from dembound.motion.endings import monitored
 from dembound.motion.kind import Plan
 from dembound.running.planning import plan
@@ -53,24 +56,26 @@ def advice_for_disks(
     of: Truth,
     kept: Sequence[str],
     longest: float | None,
-    receiver: Receiver,
+    seeds: int,
+    watch: Watch,
 ) -> Advice:
     """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
     of : truth to which errors are relative; with "disks" the disks do not change. kept : keys that do not change.
-    longest : CPU seconds that the steps of a choice may take; None: the default. receiver : of what is known before all
-    is. A case that keeps the only bound in
-    less time than a search takes is the choice itself.
+    longest : CPU seconds that the steps of a choice may take; None: the default. seeds : random packings that are run
+    to find the scatter of the case's motion; choices do not depend on it. watch : told of what is done, and of what is
+    known before all is. A case that keeps the only bound in less time than a search takes is the choice itself.
 
     Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building and
     running the companions.
     """
     _require_known(case)
     kept = [*kept, "packing.radius"] if of == "disks" else kept
-    begins("the packing, and the time step")
+    watch.begins("the packing, and the time step")
     planned: Plan[DiskScene] = plan(case)
     most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    companions = Companions(case, planned.scene, planned.time_step, most, Runner())
+    runner, reflections = Runner(shown=watch.run), Reflections(watch.begins)
+    companions = Companions(case, planned.scene, planned.time_step, most, runner, reflections)
     try:
         moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
     except CaseError as error:
@@ -78,29 +83,32 @@ def advice_for_disks(
         raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
     if not _is_reached(planned) or not any(map(np.any, moved)):
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    given = _given(companions, of, planned_cost(planned).seconds)
-    receiver.given(given)
+    given = _given(companions, of, planned_cost(planned).seconds, watch)
+    shown = given
+    if seeds > 1:
+        shown = given.with_causes(cause_of_packing(case, given.budget.motions, seeds, watch.run))
+    watch.given(shown)
     if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
-        receiver.best(bounds[0], given)
-        return Advice(given, {bounds[0]: given}, 1)
-    searches = [Search(companions, planned, of, kept, given.cost, longest=longest)]
+        watch.best(bounds[0], given)
+        return Advice(shown, {bounds[0]: given}, 1)
+    searches = [Search(companions, Candidates(planned, kept, given.cost, runner, longest=longest), of, kept, watch)]
     searches[0].know(given.budget)
-    if bounds and (twin := elastic_twin(case, planned, most, kept, companions.runner)) is not None:
-        own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, companions.runner)
-        cost = planned_cost(twin.planned).seconds
-        searches.insert(0, Search(own, twin.planned, of, kept, cost, twin, longest))
+    if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
+        own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
+        candidates = Candidates(twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest)
+        searches.insert(0, Search(own, candidates, of, kept, watch))
     best = {}
     for number, bound in enumerate(sorted(bounds, reverse=True)):
-        current().part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"
+        watch.part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"
         best[bound] = _best(given, case, searches, bound)
-        receiver.best(bound, best[bound])
-    return Advice(given, best, sum(search.tried for search in searches))
+        watch.best(bound, best[bound])
+    return Advice(shown, best, sum(search.tried for search in searches))
 
 
-def _given(companions: Companions, of: Truth, cost: float) -> Proposal:
+def _given(companions: Companions, of: Truth, cost: float, watch: Watch) -> Proposal:
     """The proposal of the unchanged case."""
     scene = companions.scene
-    ground = ground_causes(companions, scene, companions.time_step, told=True)
+    ground = ground_causes(companions, scene, companions.time_step, watch)
     causes = causes_of_choice(companions, scene, companions.time_step, 0.0, ground)
     causes += rest_causes(companions, scene) + Causes([], [], entry_notes(scene))
     budget = Budget(companions.recorded(scene), causes, of)
@@ -157,19 +165,17 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     first_break = BREAK_TIME
 
-    def causes(self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float) -> Causes:
+    def causes(
+        self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch
+    ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         require_linear(case.material.law)
-        return causes_of_run(case, recorded, time_step, work, most)
+        return causes_of_run(case, recorded, time_step, work, most, watch)
 
     def truth(self, case: DiskCase) -> Truth:
         """The default truth: "disks" where the packing is random or bonds may break, else "rock"."""
         is_grid = case.packing.is_lattice and not LAWS[case.material.law].has_history
         return "rock" if is_grid else "disks"
-
-    def of_other_seeds(self, case: DiskCase, motions: Motions, seeds: int) -> Causes:
-        """The scatter of runs with several seeds; see `Judge.of_other_seeds`."""
-        return cause_of_packing(case, motions, seeds)
 
     def at_start(self, case: DiskCase, recorded: Motions, summary: Mapping[str, Any]) -> Causes:
         """Errors by what the static stage left out of balance."""
@@ -196,11 +202,12 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         of: Truth,
         kept: Sequence[str],
         longest: float | None,
-        receiver: Receiver,
+        seeds: int,
+        watch: Watch,
     ) -> Advice:
         """The cheapest disks, sides and boxes in a continuum."""
         require_linear(case.material.law)
-        return advice_for_disks(case, bounds, of, kept, longest, receiver)
+        return advice_for_disks(case, bounds, of, kept, longest, seeds, watch)
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""

@@ -6,9 +6,8 @@ corner more slowly, so that the largest stress between disks grows at most as 1/
 contacts and bonds are nearer to their limits by at most that factor. At rest this does not hold beside a hole, where
 stress at rest is higher the smaller the disks are; nor on random packings, whose contacts are all loaded differently.
 
-A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
-come to rest under a stress p: the stress turns with the disks. S waves then come earlier or later by p/(2ρc_s²) of
-their time, and motion near a load differs by p/ρc_p² or so (docs/evidence/errors.md).
+A law whose contacts follow the motion differs from the elastic one all the same, if a body has come to rest under a
+stress: see `causes_of_turning`.
 """
 
 from __future__ import annotations
@@ -16,41 +15,34 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from dembound.accuracy.cause import USUAL, Cause, share_of
 from dembound.accuracy.choice import keeps
-from dembound.accuracy.delays import error_of_delay
-from dembound.accuracy.history import Motions
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.enlarged import ratios
-from dembound.accuracy.of_disks.waves import is_square_lattice
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
 from dembound.disks.material.constants import bond_factors
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LOAD_FACTOR
 from dembound.errors import CaseError, DemboundError
+from dembound.formulas.cause import Cause
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.disks.rest import causes_of_turning
+from dembound.formulas.disks.waves import is_square_lattice
+from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
-from dembound.motion.paths import Source
 from dembound.running import plan
-from dembound.table import EVERYWHERE
 
 RESERVE = 2.0
 """By how much the elastic law must hold with disks of another size: a region of a load as wide as a disk contains one
 row of them, or two."""
-
-NEAR_LOAD = 1.3
-"""Largest part of p/ρc_p² by which velocities and displacements in rock near a load were measured to differ, apart from
-what comes later; at a surface both together were too small by a factor of 1.3."""
 
 EQUAL = 1e-9
 """Relative difference of diameters that count as equal."""
@@ -78,19 +70,7 @@ class ElasticTwin:
 
     def causes(self, scene: DiskScene, recorded: Motions) -> list[Cause]:
         """The error by the elastic law under a stress at rest. scene : of a choice; recorded : its motion."""
-        if self.stress == 0.0:
-            return []
-        ground, sources = scene.ground, sources_of(scene.case, scene.ground)
-        p, s = (np.nanmin([ground.wave_speeds(axis)[kind] for axis in (0, 1)]) for kind in (0, 1))
-        near, slower = NEAR_LOAD * self.stress / (ground.density * p**2), self.stress / (2.0 * ground.density * s**2)
-        errors: dict[str, dict[str, np.ndarray | float]] = {}
-        for name, own in recorded.items():
-            path = max((_way(each, own.place, scene.case.size) for each in sources), default=0.0)
-            delay = partial(np.full_like, fill_value=slower * path / s)
-            parts = error_of_delay(own.time, own.values["velocity"], delay)
-            late = dict(zip(("velocity", "displacement"), parts, strict=True))
-            errors[name] = {quantity: near + share_of(part, quantity, own) for quantity, part in late.items()}
-        return [Cause("law", "by the stress at rest, which does not turn with the disks", errors, factor=USUAL)]
+        return causes_of_turning(scene, recorded, self.stress)
 
     @property
     def words(self) -> str:
@@ -102,11 +82,17 @@ class ElasticTwin:
 
 
 def elastic_twin(
-    case: DiskCase, planned: Plan[DiskScene], most: float, kept: Sequence[str], runner: Runner
+    case: DiskCase,
+    planned: Plan[DiskScene],
+    most: float,
+    kept: Sequence[str],
+    runner: Runner,
+    reflections: Reflections | None = None,
 ) -> ElasticTwin | None:
     """The case under the elastic law if that holds with the case's disks; None if not, or if it is not known.
 
     planned : of the case. most : particle-steps that the companion should take. kept : keys that do not change.
+    reflections : of sides, measured before.
     """
     if not _may_be_elastic(case, planned.scene):
         return None
@@ -127,16 +113,11 @@ def elastic_twin(
     if case.bearing is not None:  # a default of the case's law and static stage
         twin = with_changes(twin, {"boundary.bottom.bearing": case.bearing.model_dump()})
     try:
-        factor, diameter = _factor(watched, planned, most, runner)
+        factor, diameter = _factor(watched, planned, most, runner, reflections)
     except DemboundError:  # no companion can run
         return None
     found = ElasticTwin(twin, plan(twin), factor, diameter, _turning_stress(case))
     return found if found.holds(_diameter(planned)) else None
-
-
-def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
-    """Path (m) of waves from a source to a place; the whole scene if they enter on all sides."""
-    return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
 
 
 def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
@@ -185,13 +166,15 @@ def _diameter(planned: Plan[DiskScene]) -> float:
     return planned.scene.ground.brick.mean_diameter
 
 
-def _factor(case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner) -> tuple[float, float]:
+def _factor(
+    case: DiskCase, planned: Plan[DiskScene], most: float, runner: Runner, reflections: Reflections | None
+) -> tuple[float, float]:
     """The load factor, and the diameter (m) of the disks with which it was found: the smallest affordable."""
     own, scene = _diameter(planned), planned.scene
     quiet = replace(case, output=case.output.model_copy(update={"snapshots": 0}))
     for ratio in (1.0, *ratios(case, scene)):
         if ratio > 1.0:
-            larger = coarser(case, scene, planned.time_step, ratio * own).case
+            larger = coarser(case, scene, planned.time_step, ratio * own, reflections).case
             quiet = replace(larger, output=larger.output.model_copy(update={"load_factor": True}))
         built = build(quiet)
         step = choose_step(built)[0]

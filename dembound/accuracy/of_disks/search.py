@@ -7,22 +7,18 @@ found with companions of larger disks, the rest by formulas.
 
 from __future__ import annotations
 
-import heapq
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import count
 
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES, STEP, Cause, Causes, Truth
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.end import ended_earlier
-from dembound.accuracy.history import History
-from dembound.accuracy.judge import Proposal
+from dembound.accuracy.of_disks.candidates import CUT, PER_ERROR, Candidates, option_of
 from dembound.accuracy.of_disks.causes import (
     PLACES,
     causes_of_choice,
@@ -33,33 +29,15 @@ from dembound.accuracy.of_disks.causes import (
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
-from dembound.accuracy.of_disks.near import WALL_FACTOR, wall_errors
-from dembound.accuracy.of_disks.options import Built, DiskOption, Options
-from dembound.accuracy.watch import begins
+from dembound.accuracy.of_disks.options import Built, DiskOption
+from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.watch import Watch
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
-from dembound.motion.kind import Plan
-from dembound.words import percent
-
-LONGEST, PART = 8.0, 0.2
-"""CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
-that it finds the same on every machine."""
-
-PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02, 0.04, 0.12, 5e-6, 2e-8
-"""CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
-one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
-
-CUT = f"; the search ended early: it may take {LONGEST:g} s, or {percent(PART)} of the run or of --longest"
-"""Note on a choice that does not keep a bound, where the search ended for lack of time."""
-
-HELD = 30_000
-"""Most disks of a choice that is kept for other bounds."""
-
-COSTLIEST, AFFORDABLE = 64.0, 60.0
-"""Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
-or so many CPU seconds if that is more."""
-
+from dembound.formulas.cause import SIDES, STEP, Cause, Causes, Truth
+from dembound.formulas.disks.walls import WALL_FACTOR, wall_errors
+from dembound.formulas.history import History
 
 MORE = 1.1
 """Cost of a choice that was built, over that of the next one, from which on it waits until that has been tried: counted
@@ -107,44 +85,33 @@ class _Tried:
 class Search:
     """The search for a choice.
 
-    planned : the case; own_cost : CPU time (s) of its steps. twin : the case under the elastic law, if that replaces
-    its own. longest : CPU time (s) of steps that a choice may have; None: by `COSTLIEST` and `AFFORDABLE`. tried :
-    number of choices whose error was found. spent : CPU time of building choices for a bound, as counted, s; was_cut :
-    whether choices were left out for that. waiting : queue by cost: diameters, their choices, and built choices that
-    cost more than others may. of_sides : by arrangement and distance the largest error of its sides. of_disks : by
-    factors of diameter and step, with a continuum and without, the smallest error of disks. of_given_disks : the error
-    of the given disks. known : choices whose error was found for another bound, by the digest of their case. made :
-    built choices, and None for those that cannot run, by the text of their case and how much farther away their sides
-    are. counted : factors of the diameter for which the time steps of continua have been found.
+    candidates : choices by cost. watch : told of what is done. tried : number of choices whose error was found.
+    was_cut : whether choices were left out for lack of time. of_sides : by arrangement and distance the largest error
+    of its sides. of_disks : by factors of diameter and step, with a continuum and without, the smallest error of disks.
+    known : choices whose error was found for another bound, by the digest of their case.
     """
 
     companions: Companions
-    planned: Plan[DiskScene]
+    candidates: Candidates
     of: Truth
     kept: Sequence[str]
-    own_cost: float
-    twin: ElasticTwin | None = None
-    longest: float | None = None
+    watch: Watch
     bound: float = 0.0
     tried: int = 0
-    spent: float = 0.0
     was_cut: bool = False
-    waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[tuple[float, float, bool], float] = field(default_factory=dict)
     known: dict[str, list[_Found]] = field(default_factory=dict)
-    made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
-    counted: set[float] = field(default_factory=set)
-    of_given_disks: float = 0.0
-    _options: dict[float, list[DiskOption]] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.options = Options(self.planned, self.bound, self.kept)
+    @property
+    def twin(self) -> ElasticTwin | None:
+        """The case under the elastic law, if that replaces its own."""
+        return self.candidates.twin
 
     def proposal(self, given: DiskCase, bound: float) -> Proposal:
         """The best choice for a bound; given : the case that it is a choice for."""
-        self.options.bound = self.bound = bound
-        self.spent, self.was_cut, self._options = 0.0, False, {}
+        self.bound, self.was_cut = bound, False
+        self.candidates.begin(bound)
         best = self.best()
         words = best.option.words if self.twin is None else f"{self.twin.words}; {best.option.words}"
         words += (until := before_breaks(self.companions))
@@ -160,10 +127,12 @@ class Search:
         """
         sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
         if sides.found:
-            self.of_sides[_sides(self.options.own)] = Budget(given.motions, sides, self.of).worst().share.upper
+            self.of_sides[_sides(self.candidates.options.own)] = (
+                Budget(given.motions, sides, self.of).worst().share.upper
+            )
         disks = Causes([cause for cause in given.causes.found if cause.of_disks and cause.name != PLACES])
         if disks.found and not disks.unknown:
-            self.of_given_disks = Budget(given.motions, disks, self.of).worst().share.upper
+            self.candidates.of_given_disks = Budget(given.motions, disks, self.of).worst().share.upper
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or else the one with the smallest error.
@@ -182,14 +151,14 @@ class Search:
 
         All choices that were tried are added to `tried`.
         """
-        self.waiting = []
-        for item in self._by_cost():
-            option = _option(item)
+        self.candidates.waiting = []
+        for item in self.candidates.by_cost():
+            option = option_of(item)
             if item.cost >= most:
                 break
             if bool(sides_of_pair(option.case)) is not with_companions:
                 continue
-            if not self._affords(item):
+            if not self.candidates.affords(item):
                 tried.too_long.append(item)
                 continue
             if with_companions and self._keeps(self._alone(item)):
@@ -197,10 +166,10 @@ class Search:
             if not self._keeps(self._alone(item)):
                 tried.left.append(item)
                 continue
-            if (built := self._built(item)) is None:
+            if (built := self.candidates.built(item)) is None:
                 continue
-            if built is not item and self.waiting and built.cost > MORE * self.waiting[0][0]:
-                self._wait(built.cost, built)
+            if built is not item and self.candidates.waiting and built.cost > MORE * self.candidates.waiting[0][0]:
+                self.candidates.wait(built.cost, built)
                 continue
             tried.found += self._with_error(built, tried.left)
             if tried.found and self._keeps(tried.found[-1].upper):
@@ -221,13 +190,13 @@ class Search:
             item = left.pop(0)
             if found and self._alone(item) >= min(each.upper for each in found):
                 break
-            if not self._affords(item):
+            if not self.candidates.affords(item):
                 too_long.append(item)
-            elif (built := self._built(item)) is not None:
+            elif (built := self.candidates.built(item)) is not None:
                 found += self._with_error(built, None)
         self.was_cut = bool(too_long)
         for item in sorted(too_long, key=lambda each: each.cost):
-            if not found and (built := self._built(item)) is not None:
+            if not found and (built := self.candidates.built(item)) is not None:
                 found += self._with_error(built, None)
         if not found:
             raise CaseError(
@@ -235,21 +204,9 @@ class Search:
             )
         return min(found, key=lambda each: each.upper)
 
-    def _affords(self, item: DiskOption | Built) -> bool:
-        """Whether the search has time left for a choice; choices with companions leave time to those without."""
-        option = _option(item)
-        packing = option.case.packing
-        most = max(LONGEST, PART * max(self.own_cost, self.longest or 0.0))
-        spent = self.spent + PER_ERROR
-        if not isinstance(item, Built):
-            spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
-        if sides_of_pair(option.case):
-            spent += PER_STEP * self.companions.runner.work
-        return spent <= most
-
     def _alone(self, item: DiskOption | Built) -> float:
         """The largest known single error of a choice: of its sides, its disks, or walls."""
-        option = _option(item)
+        option = option_of(item)
         case = option.case
         walls = 0.0
         if self.of == "rock":
@@ -263,72 +220,16 @@ class Search:
         """Whether an error is within the bound."""
         return error <= self.bound
 
-    def _by_cost(self) -> Iterator[DiskOption | Built]:
-        """Choices by cost; choices with the next smaller disks are only counted when their cost has been reached."""
-        factors, least = self.options.factors, 0.0
-        most = max(COSTLIEST * self.own_cost, AFFORDABLE) if self.longest is None else self.longest
-        self._wait(least, factors.pop(0))
-        while self.waiting:
-            cost, _, item = heapq.heappop(self.waiting)
-            if cost > most:
-                return
-            if not isinstance(item, float):
-                yield item
-                continue
-            made = self._of(item)
-            for each in made:
-                self._wait(each.cost, each)
-            least = min((each.cost for each in made), default=least)
-            if factors:
-                self._wait(least, factors.pop(0))
-
-    def _wait(self, cost: float, item: DiskOption | Built | float) -> None:
-        """Put a choice, or a diameter whose choices are not counted yet, into the queue at its cost."""
-        heapq.heappush(self.waiting, (cost, next(self._numbers), item))
-
-    @cached_property
-    def _numbers(self) -> Iterator[int]:
-        """Numbers by which choices of one cost keep their order."""
-        return count()
-
-    def _built(self, option: DiskOption | Built) -> Built | None:
-        """A choice, built; None if it cannot run."""
-        if isinstance(option, Built):
-            return option
-        key = option.case.text, option.wider
-        if key not in self.made:
-            built = self.options.build(option)
-            disks = 0 if built is None else built.planned.scene.disk_count
-            self.spent += PER_REFUSED if built is None else PER_CHOICE + PER_DISK * disks
-            if disks > HELD:
-                return built
-            self.made[key] = built
-        return self.made[key]
-
-    def _of(self, factor: float) -> list[DiskOption]:
-        """Choices with disks of one diameter."""
-        own = self.companions.scene.ground.brick.mean_diameter
-        if self.twin is not None and not self.twin.holds(factor * own):
-            return []
-        if factor > 1.0 and self.of_given_disks * factor > self.bound:
-            return []
-        if factor not in self.counted:
-            self.counted.add(factor)
-            self.spent += PER_FACTOR
-        if factor not in self._options:
-            self._options[factor] = self.options.of(factor)
-        return self._options[factor]
-
     def _know_sides(self, option: DiskOption) -> None:
         """Find the error of a choice's sides with smaller disks from the given disks, which are quicker to build."""
         if _sides(option) in self.of_sides or option.factor >= 1.0:
             return
-        given = (each for each in self._of(1.0) if _sides(each) == _sides(option) and each.shorter == 1.0)
+        given = (each for each in self.candidates.of(1.0) if _sides(each) == _sides(option) and each.shorter == 1.0)
         same = next(given, None)
-        if same is None or not self._affords(same) or (built := self._built(same)) is None:
+        if same is None or not self.candidates.affords(same) or (built := self.candidates.built(same)) is None:
             return
         scene = built.planned.scene
-        self.spent += PER_ERROR
+        self.candidates.spent += PER_ERROR
         with suppress(DemboundError):
             self._note_sides(
                 option, [sides_cause(self.companions, scene, built.planned.time_step, option.wider)], scene
@@ -348,7 +249,7 @@ class Search:
         """
         if (known := self.known.get(key := digest(built.case))) is not None:
             return known
-        begins(f"choice {self.tried + 1}, {built.option.words}")
+        self.watch.begins(f"choice {self.tried + 1}, {built.option.words}")
         option, scene, step = built.option, built.planned.scene, built.planned.time_step
         motions = self.companions.recorded(scene)
         try:
@@ -360,7 +261,7 @@ class Search:
                 left.append(built)
                 return []
             self.tried += 1
-            self.spent += PER_ERROR
+            self.candidates.spent += PER_ERROR
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
             causes += rest_causes(self.companions, scene)
         except DemboundError:
@@ -369,11 +270,6 @@ class Search:
         law = [] if self.twin is None else self.twin.causes(scene, motions)
         self.known[key] = [_Found(built, Budget(motions, causes + Causes(law), self.of))]
         return self.known[key]
-
-
-def _option(item: DiskOption | Built) -> DiskOption:
-    """A choice before it was built."""
-    return item.option if isinstance(item, Built) else item
 
 
 def _sides(option: DiskOption) -> tuple[str, float]:

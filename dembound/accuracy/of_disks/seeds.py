@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.accuracy.cause import Cause, Causes
-from dembound.accuracy.history import Motions
 from dembound.accuracy.judge import no_seed
-from dembound.accuracy.runner import Runner
+from dembound.accuracy.runner import Runner, Shown, unseen
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import Motions
 from dembound.results.histories import Quantity
 
 PACKING = "packing"
@@ -21,14 +21,15 @@ PACKING = "packing"
 MOTIONS: tuple[Quantity, ...] = ("velocity", "displacement")
 
 
-def cause_of_packing(case: DiskCase, motions: Motions, seeds: int) -> Causes:
+def cause_of_packing(case: DiskCase, motions: Motions, seeds: int, shown: Shown = unseen) -> Causes:
     """The scatter of the monitors' motion between random packings, from runs with several seeds.
 
-    The difference of one motion from the mean of n, times √(n/(n − 1)), has the size of the error of a packing. motions
-    : by monitor, at the times at which it is found. Raises CaseError for a packing without a seed, and the errors of
-    runs.
+    The difference of one motion from the mean of n, times √(n/(n − 1)), has the size of the error of a packing.
+
+    motions : by monitor, at the times at which it is found. shown : see `Runner`. Raises CaseError for a packing
+    without a seed, and the errors of runs.
     """
-    runner = Runner()
+    runner = Runner(shown=shown)
     runs = [runner.run(each, f"random packing {k + 1} of {seeds}") for k, each in enumerate(_reseeded(case, seeds))]
     parts: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in motions.items():

@@ -18,7 +18,7 @@ RATIO_SLIDING = 1e-7
 """Force ratio at rest under a history-dependent law.
 
 What is left decides there which contacts at the limit of friction slide as a wave begins, see
-`dembound.accuracy.of_disks.rest`."""
+`dembound.formulas.disks.rest`."""
 
 MOST_STEPS = 100_000_000
 """Largest number of steps of the stage: a hundred disks take minutes for these, and thousands of steps are enough."""

@@ -8,12 +8,13 @@ from advised import advised
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import Motions
-from dembound.accuracy.of_disks import search as of_disks
+from dembound.accuracy.of_disks import candidates
+from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
+from dembound.formulas.history import Motions
 from dembound.running import Progress
 
 BAR = PUSHED | {
@@ -78,8 +79,8 @@ def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None
 
 def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: pytest.MonkeyPatch) -> None:
     """Far sides and disks of 0.5 m have an error of 0.1 %, disks of 0.17 m without them one of 40 %."""
-    monkeypatch.setattr(of_disks, "AFFORDABLE", 0.0)
-    monkeypatch.setattr(of_disks, "COSTLIEST", 10.0)  # those of 0.17 m cost 9 times the given ones, far sides 3 times
+    monkeypatch.setattr(candidates, "AFFORDABLE", 0.0)
+    monkeypatch.setattr(candidates, "COSTLIEST", 10.0)  # those of 0.17 m cost 9 times the given ones, far sides 3 times
     push = {"name": "push", "region": [13.5, 0.0, 15.0, 1.5], "force": [1e6, 0.0], "wave": "push"}
     ends = {"boundary": dict.fromkeys(("left", "right"), BAR["boundary"]["right"]), "load": [push]}
     choice = advised(small(BAR | ends), 0.001, ["boundary"])
@@ -89,8 +90,8 @@ def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: 
 
 def test_choices_that_take_longer_are_tried_where_they_may(monkeypatch: pytest.MonkeyPatch) -> None:
     """And each is built once for all bounds, here two of which none holds at first."""
-    monkeypatch.setattr(of_disks, "AFFORDABLE", 0.0)
-    monkeypatch.setattr(of_disks, "COSTLIEST", 1.5)
+    monkeypatch.setattr(candidates, "AFFORDABLE", 0.0)
+    monkeypatch.setattr(candidates, "COSTLIEST", 1.5)
     kept, built, build = ["boundary"], list[tuple[str, float]](), Options.build
 
     def counting(self: Options, option: DiskOption) -> Built | None:
@@ -145,7 +146,7 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
 
 
 def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_given_case(monkeypatch) -> None:
-    monkeypatch.setattr(of_disks, "LONGEST", 0.0)
+    monkeypatch.setattr(candidates, "LONGEST", 0.0)
     choice = advised(bar(), 0.1)  # larger disks alone do not err so much
     assert choice.words == "as in the case; the search ended early: it may take 8 s, or 20 % of the run or of --longest"
     assert choice.cost == choice.own_cost
@@ -196,6 +197,6 @@ def test_what_is_refused_with_larger_disks_is_said_to_be_so(monkeypatch) -> None
     def refused(*_: Any) -> Any:
         raise CaseError(["hole: is too near to a corner"])
 
-    monkeypatch.setattr(of_disks.Companions, "recorded", refused)
+    monkeypatch.setattr(Companions, "recorded", refused)
     with pytest.raises(CaseError, match=r"^advise: the same with disks of \d\.?\d* m, which .* hole: is too near"):
         advise(bar(), (0.03,))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import SIDES, Cause, Causes
-from dembound.accuracy.history import History
+from dembound.formulas.cause import SIDES, Cause, Causes
+from dembound.formulas.history import History
 
 TIME = np.linspace(0.0, 1.0, 5)
 MOTION = np.array([[0.0, 0.0], [1.0, 3.0], [-1.0, 4.0], [2.0, 0.0], [0.0, 0.0]])

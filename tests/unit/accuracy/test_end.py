@@ -9,12 +9,12 @@ from advised import advised
 from small_cases import PUSHED, small
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Cause, Causes
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
-from dembound.accuracy.history import History
-from dembound.accuracy.judge import Proposal
+from dembound.accuracy.proposal import Proposal
 from dembound.accuracy.runner import measure
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import History
 from dembound.running import Progress
 
 BAR: dict[str, Any] = PUSHED | {

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import History
 from dembound.accuracy.reference import Reference, Requested, errors
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
+from dembound.formulas.history import History
 
 
 def gauge(samples: int, x: float = 1.0, y: float = 0.0, place: float = 0.0, after: float = 0.0) -> History:

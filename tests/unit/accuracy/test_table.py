@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.cause import Cause, Causes
-from dembound.accuracy.history import History
 from dembound.accuracy.table import WHAT, WIDTH, lines_of, next_step
+from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.history import History
 
 TIME = np.linspace(0.0, 1.0, 5)
 

@@ -16,25 +16,26 @@ with warnings.catch_warnings():
     import dembound.kinds as kinds
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.cause import share_of
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.history import History
-from dembound.accuracy.judges import extended, judge_of
+from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.exact.references import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.near import wall_errors
 from dembound.accuracy.of_disks.options import Options
+from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.runner import Runner, at_step
 from dembound.boundaries.description import side_in_words
 from dembound.disks.matching import Held
 from dembound.disks.reflection import measure_side
-from dembound.disks.reports.side_warnings import side_warnings
-from dembound.disks.reports.summary import describe_side
 from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError
+from dembound.formulas.cause import share_of
+from dembound.formulas.disks.walls import wall_errors
+from dembound.formulas.history import History
+from dembound.kinds.disks.side_warnings import side_warnings
+from dembound.kinds.disks.summary import describe_side
 from dembound.running import plan
 from dembound.studies.calibration import calibrate
 from dembound.studies.library.build import build_library
@@ -139,7 +140,7 @@ def other_draw(made: Any) -> dict[str, Any]:
     """Source and share of the scatter between packings; or an error message."""
     motions, _ = run(made)
     try:
-        (cause,) = judge_of(made).of_other_seeds(made, motions, 2).found
+        (cause,) = cause_of_packing(made, motions, 2).found
     except CaseError as error:
         return {"refused": list(error.problems)}
     return {"words": cause.words, "share": cause.share("middle", "velocity", motions["middle"])}

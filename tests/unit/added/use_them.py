@@ -11,9 +11,9 @@ with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     import dembound.kinds as kinds
 
-from dembound.bar.facts import cells_of_waves
 from dembound.casefile.types import BOUNDARIES
 from dembound.errors import CaseError, RunError
+from dembound.kinds.bar.facts import cells_of_waves
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan

@@ -5,12 +5,12 @@ import pytest
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.disks.pressure import shares_of
-from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
 from dembound.holes.outline import EllipseOutline, PolygonOutline
 from dembound.kinds import with_changes
+from dembound.kinds.disks.facts import disk_facts
 
 P = 2e6
 CENTRE = (6.1, 5.2)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from dembound.check import check
-from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.errors import CaseError
+from dembound.kinds.disks.kind import Disks
 from dembound.running import plan, preflight, require_ready, run_case
 
 LATTICE: dict[str, Any] = {

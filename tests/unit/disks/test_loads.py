@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.load import Load
-from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import build
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
+from dembound.kinds.disks.facts import disk_facts
 from dembound.motion.simulation import Simulation
 from dembound.packings.tiling import Assembly
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.disks.matching import homogenised_beta, reflected
+from dembound.boundaries.description import reflected
+from dembound.disks.matching import homogenised_beta
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import build
 from dembound.running import plan, warnings_before

@@ -7,10 +7,10 @@ import pytest
 from small_cases import small
 
 from dembound.casefile import Case
-from dembound.disks.kind import Disks
 from dembound.disks.scene import build
 from dembound.disks.watches import WARNS, Turns, turn_warnings
 from dembound.kernels.contacts import INTACT
+from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 
 FREE: dict[str, Any] = {

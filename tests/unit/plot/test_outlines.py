@@ -7,7 +7,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.patches import PathPatch
 from small_cases import SURROUNDED, small
 
-from dembound.disks.kind import Disks
+from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
 from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, read_holes

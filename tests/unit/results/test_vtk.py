@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from dembound.disks.kind import Disks
+from dembound.kinds.disks.kind import Disks
 from dembound.results.vtk import write_paraview
 
 

@@ -9,8 +9,8 @@ import pytest
 import pyvista
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
-from dembound.bar.kind import Bars
-from dembound.disks.kind import Disks
+from dembound.kinds.bar.kind import Bars
+from dembound.kinds.disks.kind import Disks
 from dembound.results import committed
 from dembound.results.vtk import temporal_file, write_paraview
 

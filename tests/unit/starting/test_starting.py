@@ -9,9 +9,10 @@ from dembound.boundaries import SIDES
 from dembound.casefile.bar import BarCase
 from dembound.check import check
 from dembound.errors import CaseError
-from dembound.kinds import KINDS, kind_of, loads
+from dembound.kinds import kind_of, loads
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
+from dembound.schemas import BODIES
 from dembound.starting import DEFAULT, names, starting_point, titles
 
 SETTLES = {"excavation"}
@@ -23,7 +24,7 @@ def test_the_default_comes_first_and_all_have_titles() -> None:
     assert {"excavation", "lamb", "long_bar", "rock_bar", "tunnel"} <= set(names())
     assert list(titles()) == names()
     assert all(titles().values())
-    assert {kind_of(loads(starting_point(name))).name for name in names()} == set(KINDS)
+    assert {kind_of(loads(starting_point(name))).name for name in names()} == set(BODIES)
 
 
 def test_an_unknown_one_is_refused_and_a_similar_name_is_proposed() -> None:

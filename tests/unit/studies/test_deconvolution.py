@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from dembound.disks.incident_wave import Level, OfMotionWithin
 from dembound.errors import CaseError
 from dembound.exact.column import Column, ColumnMotion, Layer
+from dembound.kinds.disks.incident_wave import Level, OfMotionWithin
 from dembound.studies.deconvolution import incident_below, level_ground
 from dembound.waves import Ricker
 from tests.small_cases import PUSHED, small

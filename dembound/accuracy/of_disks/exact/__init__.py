@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.lamb import LambProblem
 from dembound.accuracy.of_disks.exact.pressure import CavityProblem, GarvinProblem
 from dembound.accuracy.of_disks.exact.problem import Problem
@@ -20,6 +19,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.files import make_folder
+from dembound.formulas.history import History
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
 from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT, header_of_monitor

@@ -9,7 +9,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
@@ -29,6 +28,7 @@ from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
 from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.solid import Solid
+from dembound.formulas.history import History
 from dembound.motion.endings import monitored
 from dembound.waves import Wave
 

@@ -9,7 +9,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
@@ -28,6 +27,7 @@ from dembound.errors import CaseError
 from dembound.exact.cavity import cavity_moment, cavity_motion
 from dembound.exact.garvin import buried_explosion
 from dembound.exact.solid import Solid
+from dembound.formulas.history import History
 from dembound.holes import Circle
 from dembound.waves import Wave
 

@@ -8,7 +8,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from dembound.accuracy.history import History
 from dembound.boundaries.edge import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.messages import numbered
@@ -16,6 +15,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.solid import Solid
+from dembound.formulas.history import History
 from dembound.holes import Circle
 from dembound.table import Box
 

@@ -8,10 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.accuracy.history import History, Motions, along
 from dembound.accuracy.of_disks.exact import exact_motions, problem_of
 from dembound.accuracy.of_disks.exact.problem import BEGINNING, must_be_continuous
-from dembound.accuracy.of_disks.waves import is_square_lattice, layers_of
 from dembound.accuracy.reference import Exact
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import OPPOSITE, SIDES, Motion, axis_of_motion, normal_axis
@@ -19,6 +17,8 @@ from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import build, ground_of
 from dembound.exact.column import Column, ColumnMotion
+from dembound.formulas.disks.waves import is_square_lattice, layers_of
+from dembound.formulas.history import History, Motions, along
 from dembound.schemas import with_changes
 
 

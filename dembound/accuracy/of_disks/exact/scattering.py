@@ -9,7 +9,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.exact.problem import (
     BEGINNING,
     ROUGH,
@@ -28,6 +27,7 @@ from dembound.disks.surroundings.ground_waves import ground_waves
 from dembound.errors import CaseError
 from dembound.exact.scattering import PlaneWave, scattered_motion
 from dembound.exact.solid import Solid
+from dembound.formulas.history import History
 from dembound.holes import Circle
 from dembound.waves import Wave
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.chart.record import Record
-from dembound.accuracy.history import History
 from dembound.accuracy.runner import Run
 from dembound.errors import RecordError
+from dembound.formulas.history import History
 from dembound.motion.kind import Finding
 
 KEY = "12ab"

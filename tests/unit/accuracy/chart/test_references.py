@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.chart.references import exact_of
-from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.exact import PulseInBar
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactPlaneWave
 from dembound.disks.scene import build
 from dembound.errors import CaseError
+from dembound.formulas.history import History
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder
 

@@ -5,9 +5,9 @@ import pytest
 from estimated_bars import dalembert, scene
 
 from dembound.accuracy.of_bars.exact import ExactMotion
-from dembound.accuracy.of_bars.rods import Window
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
+from dembound.formulas.bars.rods import Window
 from dembound.kinds import with_changes
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.history import History
 from dembound.accuracy.of_bars.judge import finer
 from dembound.accuracy.runner import Run
+from dembound.formulas.history import History
 from dembound.kinds import with_changes
 
 

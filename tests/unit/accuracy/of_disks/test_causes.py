@@ -7,15 +7,17 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.cause import STEP
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.places import places_of_loads
-from dembound.accuracy.of_disks.rest import REST
+from dembound.accuracy.of_disks.misplaced import _unmoved
+from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
+from dembound.formulas.cause import STEP
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.places import places_of_loads
+from dembound.formulas.disks.rest import REST
 from dembound.kinds import with_changes
 from dembound.running import Progress, plan
 
@@ -113,10 +115,10 @@ def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_mor
     np.testing.assert_allclose([each.middle[0] - each.asked[0] for each in places], [0.25, -0.25], atol=1e-9)
 
     # the monitor is asked for 0.25 m to the left of its disk; seen from the right load it is 0.5 m from there
-    there = companions._places(scene)["m"]
+    there = companions.places_of(scene)["m"]
     left, right = (
-        companions._motion(companions.far, {"m": there})["m"]["velocity"]
-        - companions._unmoved({"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
+        companions.motion_at(companions.far, {"m": there})["m"]["velocity"]
+        - _unmoved(companions, {"m": there + np.array([-0.25, 0.25]) + shift}, shift)["m"]["velocity"]
         for shift in (each.middle - each.asked for each in places)
     )
     cause = next(cause for cause in ground_causes(companions, scene, planned.time_step) if cause.name == "places")
@@ -211,11 +213,11 @@ def test_errors_of_contacts_grow_as_the_step_over_its_limit() -> None:
     assert isinstance(scene, DiskScene)
     for most in (1e9, 0.0):  # by the given disks, by larger ones
         companions = Companions(case, scene, step, most)
-        whole, half = (companions.of_steps(scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
+        whole, half = (errors_of_steps(companions, scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
         np.testing.assert_allclose(half, 0.5 * np.asarray(whole))
         finer = plan(with_changes(case, {"packing.radius": 0.125})).scene
         assert isinstance(finer, DiskScene)
-        same = companions.of_steps(finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
+        same = errors_of_steps(companions, finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
         assert np.linalg.norm(same) == pytest.approx(np.linalg.norm(np.asarray(whole)), rel=0.2)  # at another place
 
 
@@ -230,7 +232,8 @@ def test_contacts_that_remain_elastic_have_the_errors_of_the_formula() -> None:
     assert isinstance(case, DiskCase)
     planned = plan(case)
     assert isinstance(planned.scene, DiskScene)
-    assert Companions(case, planned.scene, planned.time_step, 1e9).of_steps(planned.scene, planned.time_step) == {}
+    companions = Companions(case, planned.scene, planned.time_step, 1e9)
+    assert errors_of_steps(companions, planned.scene, planned.time_step) == {}
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
@@ -245,8 +248,8 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     found = [rest_causes(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
     peaks = [np.abs(each.recorded(scene)["top"].velocity[:, :2]).max() for each in (own, larger)]
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
-    assert own.settled is not None
-    assert not own.settled["elastic"]
+    assert settled_of(own) is not None
+    assert not settled_of(own)["elastic"]
 
 
 def test_choices_have_the_error_of_the_rest() -> None:

@@ -9,15 +9,13 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
-from dembound.accuracy.history import History, Motions
 from dembound.accuracy.judges import judge_of
-from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, _way, elastic_twin
+from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase
+from dembound.formulas.history import History, Motions
 from dembound.kinds import with_changes
-from dembound.motion.paths import Source
 from dembound.running import Progress, plan
-from dembound.table import EVERYWHERE
 
 CONFINED: dict[str, Any] = PUSHED | {
     "packing": {"pattern": "A", "size": [20.0, 12.0], "radius": 0.25},
@@ -144,12 +142,6 @@ def test_the_law_remains_where_no_companion_can_run() -> None:
     own, few = twin_of(case), twin_of(case, most=1.0)
     assert own is not None
     assert few is None or few.diameter < 0.6
-
-
-def test_a_wave_on_all_sides_runs_through_the_scene() -> None:
-    size, there = (3.0, 4.0), np.array([1.0, 1.0])
-    assert _way(Source(EVERYWHERE, 0.0, 1.0, 500.0), there, size) == 5.0
-    assert _way(Source((2.0, 1.0, 2.0, 1.0), 0.0, 1.0, 500.0), there, size) == 1.0
 
 
 def test_bonds_of_any_strength_always_hold() -> None:

@@ -7,19 +7,19 @@ import pytest
 from small_cases import OPEN, SOIL, Tables, small
 
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.history import earlier
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.enlarged import enlarged
-from dembound.accuracy.of_disks.formulas import Formulas
-from dembound.accuracy.of_disks.matched_sides import reflected
 from dembound.accuracy.runner import measure
-from dembound.disks.entry import late_by
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packing_waves import front_of, largest_phase_speed
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.history import earlier
 from dembound.results.compare import relative_error
 from dembound.running import Progress
 
@@ -97,11 +97,11 @@ def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
     alone = {}
     for number, height in enumerate((10.0, 6.0, 1.0)):
         one = scene.case.uniform_at(height)
-        alone[number] = reflected(build(one), "left", 1e-4)["s"].size
+        alone[number] = Reflections().of(build(one), "left", 1e-4)["s"].size
     shares = np.array([4.0, 4.5, 4.0]) / 12.5
     mean = np.sqrt(shares @ np.square(list(alone.values())))
     # disks of 0.25 m, of which layers have whole numbers
-    assert reflected(scene, "left", 1e-4)["s"].size == pytest.approx(mean, rel=1e-6)
+    assert Reflections().of(scene, "left", 1e-4)["s"].size == pytest.approx(mean, rel=1e-6)
     assert min(alone.values()) < 0.9 * mean
 
 

@@ -5,10 +5,10 @@ import pytest
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.accuracy import runner
-from dembound.accuracy.history import History
 from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
+from dembound.formulas.history import History
 
 TIME = np.linspace(0.0, 1.0, 21)
 

@@ -143,8 +143,8 @@ def test_monitors_under_waves_from_a_side_are_at_the_same_places_of_larger_disks
     case = small(LAMB | {"packing": LAMB["packing"] | {"size": [41.0, 30.0]}, "boundary": driven, "load": []})
     own, other = (Companions(each, build(each), 1e-3, 1e5) for each in (case, translated(case, tuple(BY))))
 
-    for name, place in own._places(own.scene).items():
-        np.testing.assert_allclose(other._places(other.scene)[name], place + BY, rtol=0.0, atol=1e-12)
+    for name, place in own.places_of(own.scene).items():
+        np.testing.assert_allclose(other.places_of(other.scene)[name], place + BY, rtol=0.0, atol=1e-12)
 
 
 def test_a_trial_of_fewer_bricks_has_the_stiffest_springs_of_the_whole_side() -> None:

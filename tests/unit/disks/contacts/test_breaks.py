@@ -3,8 +3,8 @@
 import pytest
 
 from dembound.disks.contacts.pairs import BREAK_TIME, BREAK_X, BREAK_Y, first_break
-from dembound.disks.kind import Disks
 from dembound.kinds import with_changes
+from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 
 BONDS = {

@@ -18,10 +18,10 @@ from disk_systems import (
 )
 from small_cases import small
 
-from dembound.disks.kind import Disks
-from dembound.disks.reports.warnings import disk_warnings
 from dembound.disks.scene import build
 from dembound.disks.stepping.system import DiskSystem
+from dembound.kinds.disks.kind import Disks
+from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.simulation import Simulation
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.reports.facts import disk_facts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import step_limit
+from dembound.kinds.disks.facts import disk_facts
 
 CASE = {
     "packing": {"pattern": "B", "bricks": [2, 1], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5},

@@ -1,0 +1,144 @@
+"""Choices for a case of disks in the order of their counted cost, each built once, as long as the time lasts."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import count
+
+from dembound.accuracy.of_disks.enlarged import sides_of_pair
+from dembound.accuracy.of_disks.law import ElasticTwin
+from dembound.accuracy.of_disks.options import Built, DiskOption, Options
+from dembound.accuracy.runner import Runner
+from dembound.disks.scene import DiskScene
+from dembound.motion.kind import Plan
+from dembound.words import percent
+
+LONGEST, PART = 8.0, 0.2
+"""CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
+that it finds the same on every machine."""
+
+PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02, 0.04, 0.12, 5e-6, 2e-8
+"""CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
+one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
+
+CUT = f"; the search ended early: it may take {LONGEST:g} s, or {percent(PART)} of the run or of --longest"
+"""Note on a choice that does not keep a bound, where the search ended for lack of time."""
+
+HELD = 30_000
+"""Most disks of a choice that is kept for other bounds."""
+
+COSTLIEST, AFFORDABLE = 64.0, 60.0
+"""Cost up to which choices are tried: so many times that of the given case, as disks of a quarter of the diameter have,
+or so many CPU seconds if that is more."""
+
+
+@dataclass
+class Candidates:
+    """The choices of a search.
+
+    planned : the case; own_cost : CPU time (s) of its steps. kept : keys that do not change. runner : of companions.
+    twin : the case under the elastic law, if that replaces its own. longest : CPU time (s) of steps that a choice may
+    have; None: by `COSTLIEST` and `AFFORDABLE`. spent : CPU time of building choices for a bound, as counted, s.
+    waiting : queue by cost: diameters, their choices, and built choices that cost more than others may. made : built
+    choices, and None for those that cannot run, by the text of their case and how much farther away their sides are.
+    counted : factors of the diameter for which the time steps of continua have been found. of_given_disks : the error
+    of the given disks.
+    """
+
+    planned: Plan[DiskScene]
+    kept: Sequence[str]
+    own_cost: float
+    runner: Runner
+    twin: ElasticTwin | None = None
+    longest: float | None = None
+    bound: float = 0.0
+    spent: float = 0.0
+    waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
+    made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
+    counted: set[float] = field(default_factory=set)
+    of_given_disks: float = 0.0
+    _options: dict[float, list[DiskOption]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.options = Options(self.planned, self.bound, self.kept)
+
+    def begin(self, bound: float) -> None:
+        """Begin with another error bound."""
+        self.options.bound = self.bound = bound
+        self.spent, self._options = 0.0, {}
+
+    def affords(self, item: DiskOption | Built) -> bool:
+        """Whether the search has time left for a choice; choices with companions leave time to those without."""
+        option = option_of(item)
+        packing = option.case.packing
+        most = max(LONGEST, PART * max(self.own_cost, self.longest or 0.0))
+        spent = self.spent + PER_ERROR
+        if not isinstance(item, Built):
+            spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
+        if sides_of_pair(option.case):
+            spent += PER_STEP * self.runner.work
+        return spent <= most
+
+    def by_cost(self) -> Iterator[DiskOption | Built]:
+        """Choices by cost; choices with the next smaller disks are only counted when their cost has been reached."""
+        factors, least = self.options.factors, 0.0
+        most = max(COSTLIEST * self.own_cost, AFFORDABLE) if self.longest is None else self.longest
+        self.wait(least, factors.pop(0))
+        while self.waiting:
+            cost, _, item = heapq.heappop(self.waiting)
+            if cost > most:
+                return
+            if not isinstance(item, float):
+                yield item
+                continue
+            made = self.of(item)
+            for each in made:
+                self.wait(each.cost, each)
+            least = min((each.cost for each in made), default=least)
+            if factors:
+                self.wait(least, factors.pop(0))
+
+    def wait(self, cost: float, item: DiskOption | Built | float) -> None:
+        """Put a choice, or a diameter whose choices are not counted yet, into the queue at its cost."""
+        heapq.heappush(self.waiting, (cost, next(self._numbers), item))
+
+    @cached_property
+    def _numbers(self) -> Iterator[int]:
+        """Numbers by which choices of one cost keep their order."""
+        return count()
+
+    def built(self, option: DiskOption | Built) -> Built | None:
+        """A choice, built; None if it cannot run."""
+        if isinstance(option, Built):
+            return option
+        key = option.case.text, option.wider
+        if key not in self.made:
+            built = self.options.build(option)
+            disks = 0 if built is None else built.planned.scene.disk_count
+            self.spent += PER_REFUSED if built is None else PER_CHOICE + PER_DISK * disks
+            if disks > HELD:
+                return built
+            self.made[key] = built
+        return self.made[key]
+
+    def of(self, factor: float) -> list[DiskOption]:
+        """Choices with disks of one diameter."""
+        own = self.planned.scene.ground.brick.mean_diameter
+        if self.twin is not None and not self.twin.holds(factor * own):
+            return []
+        if factor > 1.0 and self.of_given_disks * factor > self.bound:
+            return []
+        if factor not in self.counted:
+            self.counted.add(factor)
+            self.spent += PER_FACTOR
+        if factor not in self._options:
+            self._options[factor] = self.options.of(factor)
+        return self._options[factor]
+
+
+def option_of(item: DiskOption | Built) -> DiskOption:
+    """A choice before it was built."""
+    return item.option if isinstance(item, Built) else item

@@ -1,0 +1,1 @@
+"""Errors of a run by formula, without further runs; one idea a file."""

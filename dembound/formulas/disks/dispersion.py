@@ -1,0 +1,173 @@
+"""Errors of grid and time step: waves that disks and steps delay on their way from where they start to a monitor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from dembound.boundaries import Motion, normal_axis, plane_of
+from dembound.boundaries.edge import OPPOSITE
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.scene import DiskScene
+from dembound.disks.sources import sources_of
+from dembound.formulas.cause import GRID, MOTIONS, STEP, USUAL, Cause
+from dembound.formulas.delays import Delay, error_of_delay, error_of_steps
+from dembound.formulas.disks.waves import (
+    AXES,
+    DIAGONAL,
+    Direction,
+    Frequencies,
+    delay_of,
+    errors_in_layers,
+    frequencies_of,
+    layers_between,
+)
+from dembound.formulas.history import History, Motions
+from dembound.motion.paths import Source
+
+
+@dataclass(frozen=True)
+class Way:
+    """The path of P or S waves.
+
+    motion : kind of the waves. moves : (2,) unit vector of their particle motion. directions : in which they may run.
+    parts : by layer the ground, the path in it, m, and the speed of long waves, m/s.
+    """
+
+    motion: Motion
+    moves: np.ndarray
+    directions: Sequence[Direction]
+    parts: Sequence[tuple[PackedMaterial, float, float]]
+
+    @property
+    def path(self) -> float:
+        """Its length, m."""
+        return sum(path for _, path, _ in self.parts)
+
+    @property
+    def speed(self) -> float:
+        """Speed of long waves in the slowest layer, m/s; nan where none run."""
+        return float(np.min([speed for *_, speed in self.parts]))
+
+
+def _both_ways(
+    along: np.ndarray,
+    path: float,
+    axis: int,
+    layers: Sequence[tuple[PackedMaterial, float]],
+    directions: Sequence[Direction],
+) -> list[Way]:
+    """The paths of P and S waves along a unit vector, with speeds along an axis, and shares of the path by layer."""
+    across = np.array([-along[1], along[0]])
+    p, s = ([(ground, share * path, ground.wave_speeds(axis)[kind]) for ground, share in layers] for kind in (0, 1))
+    return [Way("p", along, directions, p), Way("s", across, directions, s)]
+
+
+@dataclass(frozen=True)
+class Dispersion:
+    """Delays on the ways of one scene, which runs at a time step (s)."""
+
+    scene: DiskScene
+    time_step: float
+
+    def causes(self, motions: Motions) -> Iterator[Cause]:
+        """Errors by dispersion of the packing, and of the time step."""
+        if not any(self.ways(own) for own in motions.values()):
+            yield Cause.unknown("grid and time step", "waves start everywhere")
+            return
+        words = "by the dispersion of plane waves on the way from where waves start, and by velocities of half steps"
+        whole, grid = (
+            {name: self._delayed(own, step) for name, own in motions.items()} for step in (self.time_step, 0.0)
+        )
+        yield Cause(GRID, words, grid, of_disks=True, factor=USUAL)
+        steps = {
+            name: {quantity: each - grid[name][quantity] for quantity, each in errors.items()}
+            for name, errors in whole.items()
+        }
+        yield Cause(STEP, words, steps, factor=USUAL)
+
+    def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:
+        """Errors by dispersion, with time steps of this length (s)."""
+        errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        for way in self.ways(own):
+            if not math.isfinite(way.path * way.speed):
+                continue
+            moving = (own.values["velocity"] @ way.moves)[:, None]
+            if self._in_layers:
+                delay = partial(self._delay_of_a_second, way, step)
+                parts = errors_in_layers(self.scene, way.motion, float(own.place[1]), delay, own.time)(moving)
+            else:
+                parts = error_of_delay(own.time, moving, self.delay(way, step))
+            for quantity, part in zip(MOTIONS, parts, strict=True):
+                errors[quantity] += part * way.moves
+        for quantity, part in zip(MOTIONS, error_of_steps(own.time, own.values["velocity"], step), strict=True):
+            errors[quantity] += part
+        return errors
+
+    def delay(self, way: Way, step: float) -> Delay:
+        """Delay of waves over a path, the sum of those in its layers; step : of the run, s, or 0."""
+        parts = [
+            delay_of(ground, way.motion, way.directions, path, speed, step, self._frequencies_in(ground))
+            for ground, path, speed in way.parts
+        ]
+        return lambda omega: np.asarray(sum(part(omega) for part in parts))
+
+    @cached_property
+    def _in_layers(self) -> bool:
+        """Whether waves enter layers from below, and all come back from a free surface, or leave there."""
+        case = self.scene.case
+        top = case.side("top")
+        alone = list(case.driving) == ["bottom"] and not any(load.wave for load in case.load)
+        return self.scene.ground.is_layered and alone and bool(top.factors or top.is_free)
+
+    def _delay_of_a_second(self, way: Way, step: float, ground: PackedMaterial) -> Delay:
+        """Delay of waves in one layer over a way of one second."""
+        speed = ground.wave_speeds(1)[0 if way.motion == "p" else 1]
+        return delay_of(ground, way.motion, way.directions, speed, speed, step, self._frequencies_in(ground))
+
+    def _frequencies_in(self, ground: PackedMaterial) -> Frequencies:
+        """Frequencies of plane waves on the lattice of one layer, by direction, found once."""
+        return self._found.setdefault(id(ground), frequencies_of(ground))
+
+    @cached_property
+    def _found(self) -> dict[int, Frequencies]:
+        return {}
+
+    @cached_property
+    def _sources(self) -> list[Source]:
+        """Places and sides where waves start."""
+        return sources_of(self.scene.case, self.scene.ground)
+
+    def ways(self, own: History) -> list[Way]:
+        """Paths of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
+
+        An oblique wave comes through a continuum, which delays it less: its path is the longer side of the disks.
+        Empty where waves start everywhere.
+        """
+        sources, ground, case = self._sources, self.scene.ground, self.scene.case
+        driving = list(case.driving)
+        if driving and not any(load.wave for load in case.load):
+            axis = normal_axis(driving[0])
+            path = max(float(each.distance(own.place[None])[0]) for each in sources if not each.is_local)
+            ends = (float(own.place[1]), plane_of(driving[0], case.box) if axis == 1 else float(own.place[1]))
+            if not case.side(OPPOSITE[driving[0]]).is_artificial:
+                path = case.size[axis]  # the mean of the ways there, and back from the other side
+                ends = (case.box[1], case.box[3]) if axis == 1 else ends
+            return _both_ways(np.eye(2)[axis], path, axis, layers_between(ground, ends), [AXES[axis]])
+        if case.incident is not None:
+            layers = layers_between(ground, case.packing.box[1::2])
+            return _both_ways(np.eye(2)[1], max(case.packing.extent), 1, layers, [AXES[0], DIAGONAL])
+        local = [each for each in sources if np.isfinite(each.box).all()]
+        places = [np.clip(own.place, each.box[:2], each.box[2:]) for each in local]
+        rays = [own.place - place for place in places]
+        if not rays:
+            return []
+        ray = min(rays, key=lambda each: float(np.hypot(*each)))
+        path, axis = float(np.hypot(*ray)), int(np.argmax(np.abs(ray)))
+        along = ray / path if path > 0.0 and not {0, 1} & set(ground.held) else np.eye(2)[axis]
+        layers = layers_between(ground, (float(own.place[1]), float(own.place[1] - ray[1])))
+        return _both_ways(along, path, axis, layers, [AXES[0], DIAGONAL])

@@ -1,0 +1,1 @@
+"""Bonded disks as a kind of body, and what is said of them: facts, warnings, summary, meshes for pictures."""

@@ -1,0 +1,233 @@
+"""The results of a run of disks, as numbers for scripts and in words."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from dembound.disks.rest.settled import Settled, Uniformity
+from dembound.disks.scene import DiskScene
+from dembound.disks.sides import layers_beside, media_of
+from dembound.disks.stepping.load_factor import load_factor_in_words, load_factor_of
+from dembound.disks.stepping.near_ties import OPENED
+from dembound.disks.stepping.side_watch import WARNS
+from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.watches import FarDisks, Turns
+from dembound.kinds.disks.ground import describe_layers, packing_quantities
+from dembound.motion.part import MANY
+from dembound.motion.trackers import Run
+from dembound.results.reader import laws_in_words
+from dembound.words import numbers, percent, with_unit
+
+SHOWN = 1e-3
+"""Share of the stress below which what differs in the packing itself is not printed."""
+
+
+SEVERAL = "contacts slid or opened while the body settled, so that its rest is one of several"
+"""Said of a static stage that left the elastic law."""
+
+
+def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
+    """Reductions, the static stage, changes of law, broken bonds and the energy error."""
+    facts = [*summary["reduced"], *summary["not_reduced"]]
+    if (static := summary["static"]) is not None:
+        stages = [("static stage", static)]
+        if (before := static["before"]) is not None:
+            stages = [("static stage before the excavation", before), ("static stage after the excavation", static)]
+        lines = [line for name, stage in stages for line in _stages(name, stage)]
+        took = with_unit(summary["seconds"]["settle"], "s", 2)
+        facts += [*lines[:-1], f"{lines[-1]}; {took}{' for all stages' if len(lines) > 1 else ''}"]
+        if not static["elastic"]:
+            facts.append(f"{SEVERAL}: dembound estimate says how far they differ")
+    if summary["has_history"]:
+        facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
+        facts += _broken(summary["cracks"], static)
+        if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
+            facts.append(
+                f"largest error of the energy balance: {percent(error)}{_worked(summary.get('forces_at_rest'))}"
+            )
+    if (found := summary["load_factor"]) is not None:
+        facts.append(load_factor_in_words(found))
+    return facts
+
+
+def _worked(found: Mapping[str, Any] | None) -> str:
+    """Work of forces at rest, which the error of the ledger does not include, if it is more than waves explain."""
+    work = None if found is None else found["work"]
+    if work is None or work["size"] <= WARNS:
+        return ""
+    return f"; forces at rest did {percent(work['size'])} of what came in or was stored, on ground that left its side"
+
+
+def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:
+    """Numbers and modes of all broken bonds, without those of the static stages, which are reported with them."""
+    count = cracks["tension"] + cracks["shear"]
+    if count == 0:
+        return []
+    modes = f"({cracks['tension']:,} tension, {cracks['shear']:,} shear)"
+    stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
+    if [count] == stages:
+        return [f"bonds broke only in the static stage {modes}"]
+    draw = ", one draw of many: see dembound estimate --repeat" if count - sum(stages) > MANY else ""
+    return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}{draw}"]
+
+
+def _stages(name: str, static: Mapping[str, Any]) -> list[str]:
+    """Results of a static stage, after those of its free-field column if there is one."""
+    column = [] if static["column"] is None else [f"{name} of the free-field column: {_stage(static['column'])}"]
+    return [*column, f"{name}: {_stage(static)}"]
+
+
+def _stage(static: Mapping[str, Any]) -> str:
+    """Results of a static stage in words, from its summary."""
+    reached = ""
+    if (asked := static["asked"]) is not None:  # supports may have prevented it
+        reached = f", stress {_in_mpa(static['stress'])} of {_in_mpa(asked)} MPa requested"
+        reached += _even(static["uniformity"])
+    broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
+    return f"{static['steps']:,} steps, unbalanced force ratio {static['ratio']:.1e}{reached}{broken}"
+
+
+def _even(uniformity: Mapping[str, Any]) -> str:
+    """Deviation of the stress in blocks from the requested stress, in words."""
+    own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
+    return (
+        f", within {percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
+        f"{f', {percent(beyond)} beyond what the packing has by itself' if own >= SHOWN else ''}"
+        f"{f', {percent(near)} next to holes' if near is not None else ''}"
+    )
+
+
+def block_in_words(uniformity: Mapping[str, Any]) -> str:
+    """The blocks of a summary's `uniformity`."""
+    width, height = uniformity["block"]
+    return f"blocks of {width:.3g} m × {height:.3g} m"
+
+
+def _in_mpa(stress: Sequence[float]) -> str:
+    """A stress xx, yy, xy in Pa as text in MPa; components negligible compared with the largest are printed as 0."""
+    least = 1e-3 * max(map(abs, stress))
+    return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"
+
+
+def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
+    """Entries of a summary of disks in addition to those of every run: plain JSON values, SI units."""
+    return {
+        "particles": scene.disk_count,
+        "has_history": scene.has_history,
+        "contacts": len(scene.assembly.pairs),
+        "loose_disks_left_out": scene.assembly.loose,
+        "packing": numbers(packing_quantities(scene)),
+        "layers": describe_layers(scene),
+        "load_factor": _describe_load_factor(run),
+        "forces_at_rest": _describe_forces_at_rest(run),
+        "far": _describe_far(run),
+        "turns": _describe_turns(run),
+        "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
+    }
+
+
+def _describe_load_factor(run: Run) -> dict[str, Any] | None:
+    """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
+    found = load_factor_of(run)
+    return None if found is None else found.describe(run) or {"factor": None}
+
+
+def _describe_forces_at_rest(run: Run) -> dict[str, Any] | None:
+    """What the forces at rest did at the sides, see `SideWatch.describe`; None without a static stage."""
+    system = run.system
+    if not isinstance(system, DiskSystem) or system.balance is None:
+        return None
+    return system.side_watch.describe()
+
+
+def _describe_far(run: Run) -> dict[str, Any] | None:
+    """Disks that have fallen far below the scene, see `FarDisks.describe`; None if there are none."""
+    found = run.state.owners.get(FarDisks.name)
+    return found.describe(run.time_step) if isinstance(found, FarDisks) else None
+
+
+def _describe_turns(run: Run) -> dict[str, Any] | None:
+    """The largest turn of a bond, see `Turns.describe`; None where bonds follow the motion."""
+    found = run.state.owners.get(Turns.name)
+    return found.describe(run) if isinstance(found, Turns) else None
+
+
+def asked_stress(scene: DiskScene) -> list[float] | None:
+    """The target stress (Pa) of the static stage, if any, and if it is the same everywhere."""
+    static = scene.case.static
+    if scene.at_rest is not None and not scene.at_rest.is_uniform:
+        return None
+    return None if static is None or static.stress is None else list(static.stress)
+
+
+def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
+    """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
+
+    Also whether it ended under the elastic law, the deviation of the stress in blocks from the requested one, and the
+    same entries for the free-field column, if there is one, and before an excavation, if there was one. asked : target
+    stress, Pa.
+    """
+    return {
+        "steps": settled.steps,
+        "ratio": settled.ratio,
+        "mean_reaction": settled.mean_reaction,
+        "mean_residual": settled.mean_residual,
+        "stress": settled.stress.tolist(),
+        "asked": asked,
+        "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
+        "elastic": not settled.start.has_history,
+        "cracks": len(settled.cracks),
+        "column": None if settled.column is None else describe_static(settled.column, None),
+        "before": None if settled.before is None else describe_static(settled.before, asked),
+    }
+
+
+def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
+    """The deviation of the stress in blocks from the requested one, see `Uniformity`."""
+    return {
+        "block": found.block.tolist(),
+        "deviation": found.deviation,
+        "place": found.place.tolist(),
+        "packing": found.packing,
+        "beyond": found.beyond,
+        "near_holes": None if np.isnan(found.near_holes) else found.near_holes,
+    }
+
+
+def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
+    """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table.
+
+    In several layers the latter are those of the lowest, and `layers` has those of each, the lowest first.
+    """
+    table, parts = scene.case.side(side), media_of(scene, side)
+    edge = (scene.sides if table.is_outside else scene.edges)[side]
+    described: dict[str, Any] = {
+        "type": table.type,
+        "particles": len(edge.nodes),
+        "length": edge.length,
+        "diameter_min": edge.diameters.min(),
+        "diameter_mean": edge.diameters.mean(),
+        "diameter_max": edge.diameters.max(),
+        "diameter_sum_ratio": edge.diameter_sum_ratio,
+    }
+    if len(parts) == 1 or table.is_outside:
+        return described | table.describe(edge, parts[0][1])
+    names = (scene.case.layer_names[number] for number in layers_beside(scene, side))
+    each = [{"layer": name} | table.describe(*part) for name, part in zip(names, parts, strict=True)]
+    return described | table.describe(*parts[0]) | {"layers": each}
+
+
+def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
+    """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y.
+
+    With a continuum also when and where the first contacts near its ties opened or slid.
+    """
+    described = describe_side(scene, side)
+    largest = np.abs(run.edge_peaks(side)[:, :2]).max(axis=2)
+    watch = run.system.near_ties if isinstance(run.system, DiskSystem) else None
+    if watch is not None and scene.case.side(side).is_outside:
+        described[OPENED] = watch.describe(side, run.time_step)
+    described["peak_velocity"] = largest.mean(axis=0).tolist()
+    described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
+    return described

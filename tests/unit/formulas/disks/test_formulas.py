@@ -1,0 +1,277 @@
+"""Causes of errors of disks: driven sides, delays, a continuum, and what is not estimated."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_cases import GRAINS, SURROUNDED, Tables, small
+
+from dembound.accuracy.of_disks.causes import causes_of_run
+from dembound.accuracy.runner import measure
+from dembound.disks.scene import build
+from dembound.formulas.cause import GRID, STEP
+from dembound.formulas.disks.driven_sides import reflected_motion
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.held_sides import HeldSides
+from dembound.formulas.disks.reflections import Reflected
+from dembound.formulas.history import History
+from dembound.results.compare import relative_error
+from dembound.running import Progress
+
+HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
+TIME = np.linspace(0.0, 0.08, 401)
+PLACE = np.array([2.25, 8.25])
+
+LAYER: Tables = {
+    "packing": {"pattern": "A", "size": [5.0, HEIGHT], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": SPEED},
+    "boundary": {
+        "bottom": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 0.6, "half_mass": True},
+        "left": {"type": "periodic"},
+        "right": {"type": "periodic"},
+    },
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": PERIOD}},
+    "monitor": [{"name": "middle", "position": PLACE.tolist()}],
+    "run": {"duration": 0.08},
+}
+"""A layer that a P wave enters from below, through dashpots that are too soft; its top is free."""
+
+
+def pulse(t):
+    return np.where((t > 0.0) & (t < PERIOD), 0.5 * (1.0 - np.cos(2.0 * np.pi * t / PERIOD)), 0.0)
+
+
+def recorded(velocity):
+    """A record along y, as long as the run."""
+    step = TIME[1] - TIME[0]
+    motion = np.stack([np.zeros_like(TIME), velocity], axis=1)
+    displacement = step * (np.cumsum(motion, axis=0) - 0.5 * motion)
+    return {"middle": History(PLACE, TIME, {"velocity": motion, "displacement": displacement})}
+
+
+def cause(tables, name, record, step=1e-4):
+    found = Formulas(build(small(tables)), step).causes(record)
+    return next(each for each in found if each.name == name).parts["middle"]
+
+
+def test_a_driven_side_keeps_a_part_of_its_wave_and_sends_back_what_returns():
+    # R = (1 − 0.6)/(1 + 0.6) = 0.25 of a wave is reflected, so that 0.75 of it comes in, of which the error is a
+    # third; what comes down again is reflected after 2H/c = 40 ms. Half cells reflect tan²(qD/4), below 1e-3, more.
+    up = pulse(TIME - 0.01)
+    error = cause(LAYER, "bottom side", recorded(up))
+    np.testing.assert_allclose(error["velocity"][:, 1], (pulse(TIME - 0.05) - up) / 3.0, atol=5e-3)
+    np.testing.assert_array_equal(error["velocity"][:, 0], 0.0)
+    # nothing comes back from an absorbing far side
+    tables = LAYER | {"boundary": LAYER["boundary"] | {"top": {"type": "viscous"}}}
+    error = cause(tables, "bottom side", recorded(up))
+    np.testing.assert_allclose(error["velocity"][:, 1], -up / 3.0, atol=5e-3)
+
+
+def test_reflection_out_of_phase_leaves_no_displacement():
+    record = recorded(pulse(TIME))["middle"]
+    found = reflected_motion(record, 1, Reflected(0.1, 0.0))
+    acceleration = np.gradient(pulse(TIME), TIME)
+    assert np.linalg.norm(found["velocity"]) == pytest.approx(0.1 * np.linalg.norm(pulse(TIME)))
+    assert float(found["velocity"] @ acceleration) < 0.0  # a mass too much: late, as −τ dv/dt
+    assert abs(found["displacement"][-1]) < 1e-12
+    sent = reflected_motion(record, 1, Reflected(1.0, 1.0))  # without dashpots nothing comes in
+    assert all((values == 0.0).all() for values in sent.values())
+
+
+def test_waves_are_late_by_the_mean_of_their_ways_and_larger_steps_make_them_earlier():
+    # c(q) = c(1 − (qD)²/24) on the way H, so that ω comes late by τ = (H/c)(ωD/c)²/24: the error −τ dv/dt is
+    # (H/c)(D/c)²/24 d³v/dt³. Next terms are smaller by (qD)², 2 % of the third derivative of this pulse.
+    bell = np.exp(-(((TIME - 0.04) / 0.006) ** 2))
+    third = np.gradient(np.gradient(np.gradient(bell, TIME), TIME), TIME)
+    error = cause(LAYER, GRID, recorded(bell))["velocity"][:, 1]
+    expected = HEIGHT / SPEED * (0.5 / SPEED) ** 2 / 24.0 * third
+    np.testing.assert_allclose(error, expected, atol=0.03 * np.abs(expected).max())
+    # cΔt/D = 0.8, so that steps take back 0.64 of what the grid adds; velocities are smaller by (ωΔt)²/8
+    grid, step = (cause(LAYER, name, recorded(bell), 4e-4)["velocity"][:, 1] for name in (GRID, STEP))
+    second = np.gradient(np.gradient(bell, TIME), TIME)
+    np.testing.assert_allclose(step, -0.64 * grid + 4e-4**2 / 8.0 * second, atol=0.03 * np.abs(grid).max())
+
+
+def test_single_disks_at_the_edge_of_a_random_packing_are_named():
+    times = np.linspace(0.0, 0.03, 31)
+    motion = {quantity: np.zeros((31, 2)) for quantity in ("velocity", "displacement")}
+    at = {"edge": (7.8, 2.0), "inside": (4.0, 2.0), "free": (4.0, 3.9)}
+    record = {name: History(np.array(place), times, motion) for name, place in at.items()}
+    found = causes_of_run(small(GRAINS, changes={"monitor": []}), record, 1e-4, 1e6, 1e6)
+    (edge,) = [cause for cause in found.unknown if "single disks" in cause.words]
+    assert edge.words.endswith("at edge")
+    assert edge.of_disks
+    assert not causes_of_run(small(LAYER), recorded(pulse(TIME)), 1e-4, 1e6, 1e6).unknown
+
+
+def test_displacements_beside_a_continuum_have_smaller_errors_than_velocities():
+    tables = LAYER | {
+        "material": LAYER["material"] | {"fric": 0.5},
+        "packing": LAYER["packing"] | {"size": [10.0, 10.0]},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "load": [{"name": "hammer", "force": [0.0, 1.0], "position": [5.25, 9.75], "wave": "pulse"}],
+    }
+    errors = cause(tables, "continuum", recorded(pulse(TIME)))
+    assert 0.0 < errors["displacement"] < errors["velocity"] < 0.1
+
+
+@pytest.mark.parametrize(
+    ("changes", "is_known"),
+    [
+        ({}, True),  # the elastic law
+        ({"material.law": "linearpbond"}, False),
+        (
+            {"material.law": "linearpbond", "static.boundary.bottom.type": "fixed", "load.weight.wave": None},
+            True,
+        ),  # pressed together
+    ],
+)
+def test_contacts_that_may_be_open_beside_a_continuum_are_an_unknown_cause(changes, is_known) -> None:
+    weight = {"name": "weight", "acceleration": [0.0, -10.0], "wave": "push"}
+    tables = SURROUNDED | {"wave": {"push": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}}
+    tables["load"] = [weight, {"name": "push", "force": [0.0, -1.0], "position": [6.5, 5.5], "wave": "push"}]
+    found = Formulas(build(small(tables, changes=changes)), 1e-4).causes(recorded(pulse(TIME)))
+    assert ("continuum beside contacts" not in [each.name for each in found]) == is_known
+
+
+def test_random_packings_may_have_open_contacts_also_at_rest() -> None:
+    grains = GRAINS | {
+        "material": GRAINS["material"] | {"fric": 0.5, "law": "linearpbond", "locked_in": 1e5},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "load": [{"name": "push", "force": [0.0, -1.0], "position": [4.0, 2.0], "wave": "pulse"}],
+        "static": {"damp": 0.7},
+    }
+    found = Formulas(build(small(grains)), 1e-4).causes(recorded(pulse(TIME)))
+    assert "continuum beside contacts" in [each.name for each in found if each.how == "unknown"]
+
+
+def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
+    pulled = LAYER | {
+        "boundary": {side: LAYER["boundary"][side] for side in ("left", "right")},
+        "load": [{"name": "shake", "acceleration": [0.0, 1.0], "wave": "pulse"}],
+    }
+    found = causes_of_run(small(pulled), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert not {GRID, STEP} & {each.name for each in found.found}
+    assert ("grid and time step", "waves start everywhere") in [(each.name, each.words) for each in found.unknown]
+    jumping = SURROUNDED | {"wave": {"push": {"type": "constant", "amplitude": 1.0}}}
+    jumping["load"] = [{"name": "push", "force": [0.0, -1.0], "position": [6.0, 6.0], "wave": "push"}]
+    found = causes_of_run(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert [each.how for each in found.found if each.name == "continuum"] == ["unknown"]
+
+
+@pytest.mark.parametrize(
+    ("bottom", "top", "kind", "end"),
+    [
+        ({"type": "velocity", "wave_s": "q"}, {"type": "free"}, "s", 0.6),  # τ = 5 · 2 · 0.63 D/c = 22 ms
+        pytest.param(
+            *(
+                {"type": "velocity", "wave_s": "q"},
+                {"type": "roller", "artificial": False},
+                "s",
+                0.6,
+            ),  # free along itself
+            marks=pytest.mark.slow,
+        ),
+        (
+            {"type": "velocity", "wave_s": "q"},
+            {"type": "fixed", "artificial": False},
+            "s",
+            0.2,
+        ),  # 2 · 2(0.63 + 0.77)D/c
+        ({"type": "viscous_input", "wave_p": "q"}, {"type": "roller", "artificial": False}, "p", 0.6),  # D/c
+    ],
+)
+def test_waves_that_come_back_to_disks_held_at_their_centres_are_early(bottom, top, kind, end) -> None:
+    # The column of a finer lattice errs by the same, D'/D times as much, so that the difference of both is 1 - D'/D of
+    # the error. What the first order leaves is ωτ/2 of it, at most 0.24, with the shift τ of all round trips to the end
+    tables = {
+        "packing": {"pattern": "A", "size": [2.0, 12.0], "radius": 0.5},
+        "material": {"density": 1800.0, "p_wave_speed": 400.0},
+        "boundary": {side: {"type": "periodic"} for side in ("left", "right")} | {"bottom": bottom, "top": top},
+        "wave": {"q": {"type": "cubic_spline", "amplitude": 0.1, "period": 0.28}},
+        "monitor": [{"name": "top", "position": [1.5, 8.5]}],
+        "run": {"duration": end},
+    }
+    column = 0 if kind == "s" else 1
+    coarse, fine = (small(tables, changes={"packing.radius": radius}) for radius in (0.5, 0.5 / 3))
+    motions = [measure(case, Progress())[0].motions["top"] for case in (coarse, fine)]
+    late = [late_by(build(case)) for case in (coarse, fine)]
+    own = replace(motions[0], values={q: motions[0].values[q][:, :2] for q in ("velocity", "displacement")})
+    causes = causes_of_run(coarse, {"top": own}, 1e-4, 1e6, 1e6).found
+    found = [each for each in causes if each.of_disks and each.name.endswith("side")]
+    for quantity in ("velocity", "displacement"):
+        other = motions[1].at(own.time - late[0] + late[1]).values[quantity][:, column]
+        inside = (own.time > 0.02) & (own.time < end - 0.02)
+        difference = (own.values[quantity][:, column] - other)[inside]
+        expected = sum(2.0 / 3.0 * np.asarray(each.parts["top"][quantity])[:, column][inside] for each in found)
+        assert np.linalg.norm(difference - expected) < 0.24 * np.linalg.norm(difference)
+
+
+def test_the_shift_of_many_round_trips_adds_no_more_than_twice_the_motion() -> None:
+    tables = {
+        "packing": {"pattern": "A", "size": [2.0, 12.0], "radius": 0.5},
+        "material": {"density": 1800.0, "p_wave_speed": 400.0},
+        "boundary": {side: {"type": "periodic"} for side in ("left", "right")}
+        | {"bottom": {"type": "velocity", "wave_p": "q"}},
+        "wave": {"q": {"type": "cubic_spline", "amplitude": 0.1, "period": 0.05}},
+        "monitor": [{"name": "top", "position": [1.5, 11.5]}],
+        "run": {"duration": 6.0},  # 100 round trips, each early by 2.5 ms
+    }
+    case = small(tables)
+    own = measure(case, Progress())[0].motions["top"]
+    own = replace(own, values={q: own.values[q][:, :2] for q in ("velocity", "displacement")})
+    (cause,) = HeldSides(build(case)).causes({"top": own})
+    error = np.abs(cause.parts["top"]["velocity"]).max()
+    largest = np.abs(own.values["velocity"]).max()
+    # pulses of 50 ms come 250 ms too early in the end, so that both motions count, as one or as their sum; dispersion
+    # changes their height by less than a tenth
+    assert 0.9 * largest < error < 2.1 * largest
+
+
+def test_springs_of_a_driven_side_and_held_sides_without_an_estimate_are_named() -> None:
+    springs = {"type": "viscoelastic_input", "wave_p": "pulse", "distance": 40.0}
+    case = small(LAYER | {"boundary": {"bottom": springs}})
+    found = causes_of_run(case, recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert any(each.name == "bottom side" and "springs" in each.words for each in found.unknown)
+    # a driven side that a load's waves reach, too
+    load = {"name": "hammer", "force": [0.0, 1.0], "position": [2.25, 12.25], "wave": "pulse"}
+    driven = {"boundary": {"bottom": {"type": "velocity", "wave_p": "pulse"}}, "load": [load]}
+    found = causes_of_run(small(LAYER | driven), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert any(line.startswith("bottom: disks are held at centres") for line in found.limits)
+    # companions fill the ground
+    tables = SURROUNDED | {"wave": LAYER["wave"], "load": [load | {"position": [32.5, 3.5]}]}
+    tables |= {"ground": {"size": [40.0, 6.0]}, "packing": SURROUNDED["packing"] | {"origin": [28.0, 0.0]}}
+    tables["monitor"] = [{"name": "middle", "position": [34.5, 3.5]}]
+    tables["boundary"] = {"left": {"type": "outside"}, "right": {"type": "fixed", "artificial": False}}
+    found = causes_of_run(small(tables), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert [(each.name, each.of_disks) for each in found.unknown] == [("right side", True)]
+
+
+def test_single_disks_at_a_random_surface_err_as_waves_at_an_angle_strain_it() -> None:
+    """Waves of 80 diameters and 20°; eight disks from the surface down to two diameters."""
+    random = {"pattern": "B", "size": [16.0, 8.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [8.0, 8.0], "seed": 3}
+    tables = SURROUNDED | {
+        "packing": random,
+        "outside": {},
+        "incident": {"type": "sv", "angle": 20.0, "wave": "in"},
+        "wave": {"in": {"type": "cosine", "amplitude": 1.0, "period": 0.14}},
+        "monitor": [{"name": f"m{k}", "position": [4.0 + k, 8.0 - 0.5 * (k % 2)]} for k in range(8)],
+        "run": {"duration": 0.2},
+    }
+    case = small(tables)
+    scene = build(case)
+    assert scene.ground_waves is not None
+    found, expected = [], []
+    motions = {
+        name: replace(own, values={quantity: values[:, :2] for quantity, values in own.values.items()})
+        for name, own in measure(case, Progress())[0].motions.items()
+    }
+    formulas = Formulas(scene, 1e-6)  # so short that steps do not count
+    (cause,) = (each for each in formulas.causes(motions) if each.name == "surface")
+    for name, own in motions.items():
+        ground = scene.ground_waves.motion("velocity", own.time, own.place[None])[:, 0, :2]
+        column = own.component("velocity")
+        found.append(relative_error((own.velocity - ground)[:, column], ground[:, column]))
+        expected.append(cause.share(name, "velocity", own))
+    assert 1.0 / cause.factor < np.linalg.norm(found) / np.linalg.norm(expected) < cause.factor

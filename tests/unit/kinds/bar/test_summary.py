@@ -1,0 +1,141 @@
+"""Entries of a bar's summary."""
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.bar.fracture import Spall, spalls
+from dembound.bar.scene import build_bar
+from dembound.gauge.peaks import first_fall
+from dembound.kinds.bar import summary
+from dembound.kinds.bar.summary import LATER_SPALLS, describe_bar, describe_end, part_of, summarise_bar
+from dembound.motion.energy import Ledger
+from dembound.motion.kind import Beginning, Plan
+from dembound.motion.simulation import Simulation
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories
+from dembound.results.summary import summarise
+from dembound.running import plan
+
+
+@pytest.fixture
+def run(spalling, tmp_path):
+    """Runs the spalling bar with keys changed: its plan, simulation and record."""
+
+    def make(**changes: object):
+        planned = plan(spalling(changes))
+        simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
+        path: Path = tmp_path / "run.h5"
+        ledger = Ledger(simulation, planned.steps - 1)
+        with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
+            simulation.track(Histories(recorder), ledger)
+            simulation.run(planned.steps)
+        return planned, simulation, path
+
+    return make
+
+
+def summary_of(planned: Plan, simulation: Simulation, path: Path) -> dict:
+    """The summary of a run that took a second."""
+    common = summarise(planned, simulation, path, {"step": 1.0})
+    return common | planned.kind.summarise(planned.scene, simulation, Beginning(simulation.system), path)
+
+
+def test_a_bar_and_its_ends_in_numbers(spalling) -> None:
+    ends = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
+    scene = build_bar(spalling({"bar.section": 0.5, "bar.attenuation": 0.1, **ends}))
+
+    described = describe_bar(scene)
+    assert (described["youngs_modulus"], described["impedance"], described["section"]) == (2.5e9, 2.5e6, 0.5)
+    assert described["critical_stretch"] == 8e6 / 2.5e9
+    assert described["strength"] == pytest.approx(8e6, rel=1e-15)
+    assert described["fracture_energy"] is described["crack_opening"] is described["characteristic_length"] is None
+    assert describe_end(scene, "left") == {"type": "fixed"}
+    assert describe_end(scene, "right") == {"type": "viscous", "beta_p": 0.9}
+    bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
+    described = describe_bar(build_bar(spalling({"bar": bar})))
+    assert described["critical_stretch"] is described["strength"] is None
+
+
+def test_the_summary_of_a_bar_is_plain_json_with_the_spalls_of_its_bonds(run, monkeypatch) -> None:
+    planned, simulation, path = run()
+    found = json.loads(json.dumps(summary_of(planned, simulation, path), allow_nan=False))
+
+    assert (found["name"], found["nodes"], found["steps"]) == ("spalling", 41, 60)
+    assert found["method"] == {"type": "peridynamics", "horizon": 3, "corrected_ends": False}
+    assert found["courant"] == pytest.approx(1.0, rel=1e-12)
+    assert found["laws"] == [{"law": "peridynamics, m = 3", "from": 0.0}]
+    assert found["bar"]["wave_speed"] == 1000.0
+    assert found["boundaries"] == {"left": {"type": "free"}, "right": {"type": "free"}}
+    assert found["bond_updates"] == part_of(simulation).bond_updates > 0
+    assert not {"particles", "contacts", "packing", "static"} & set(found)
+    # the books close to rounding: 60 steps of sums over 41 nodes
+    assert found["energy"]["relative_error"] < 60 * 41 * np.finfo(float).eps
+
+    bonds = part_of(simulation).bonds
+    expected = spalls(bonds, planned.scene.positions[:, 0], planned.time_step)
+    assert found["spalls"] == [spall.describe() for spall in expected]
+    # tension comes once crest and tail, 0.4 m apart, have met at the far end
+    assert expected[0].time > 1e-3
+    assert found["cracks"] == {"tension": len(bonds.breaks(0)[0]), "shear": 0}
+    for count in (0, 1, 2):  # those after the first are not to be relied on
+        monkeypatch.setattr(summary, "spalls", lambda *_, n=count: n * [Spall(1e-3, (0.9, 0.9), (0.9, 0.9))])
+        note = summarise_bar(planned.scene, simulation, path)["spalls_note"]
+        assert note == (LATER_SPALLS if count > 1 else None)
+
+
+@pytest.mark.parametrize("held", [{"type": "fixed"}, {"type": "velocity", "wave_p": "still"}], ids=["fixed", "moved"])
+def test_a_bar_torn_off_the_end_that_holds_it_has_not_spalled(run, held: dict) -> None:
+    # tension, which an end that is held doubles: the bar breaks there at the latest
+    pull = {"name": "pull", "pressure": -6e6, "nodes": 3, "wave": "hit"}
+    still = {"wave.still": {"type": "constant", "amplitude": 1e-9, "start": 0.0}} if "wave_p" in held else {}
+    planned, simulation, path = run(**{"boundary.right": held, "load": [pull], **still})
+    found = summary_of(planned, simulation, path)
+
+    assert found["spalls"] == []
+    assert list(found["breaks_at_ends"]) == ["right"]
+    assert found["breaks_at_ends"]["right"]["start"][1] == 1.0
+    # the front is there at 1 ms
+    assert found["breaks_at_ends"]["right"]["time"] > 1e-3
+
+
+def test_largest_stresses_are_those_a_gauge_has_felt(run) -> None:
+    hit = {"name": "hit", "pressure": 12e6, "wave": "hit"}
+    changes = {"bar.strength": 1e9, "method": {"type": "finite_difference"}, "load": [hit]}
+    for duration, tension in ((1e-4, 0.0), (1.4e-3, 0.0), (2e-3, 12e6)):
+        planned, simulation, path = run(**changes, **{"run.duration": duration})
+        (gauge,) = summarise_bar(planned.scene, simulation, path)["stress"].values()
+
+        # cΔt = Δx carries the pulse as it is, its crest sampled after eight steps; rounding adds up over 80 steps
+        came = -12e6 if duration > 1e-3 else 0.0
+        assert gauge["compression"] == pytest.approx(came, rel=80**2 * np.finfo(float).eps)
+        # from the free end it comes back as tension, to the gauge at 1.475 ms
+        assert gauge["tension"] == pytest.approx(tension, abs=80**2 * np.finfo(float).eps * 12e6)
+
+
+def gauges(*places: float) -> dict:
+    return {"monitor": [{"name": f"at-{place:g}", "position": place} for place in places]}
+
+
+@pytest.mark.parametrize(("side", "free", "outwards"), [("left", 1.0, 1.0), ("right", 0.0, -1.0)])
+def test_pull_back_is_that_of_a_free_end_beyond_a_spall(run, side: str, free: float, outwards: float) -> None:
+    hit = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit", "side": side}
+    planned, simulation, path = run(**gauges(0.0, 0.5, 1.0), load=[hit], **{"run.duration": 2e-3})
+    with h5py.File(path) as file:
+        velocity = file[f"histories/at-{free:g}/velocity"][:, 0]
+
+    # ½ρc of how far the velocity falls; the loaded end and the middle tell nothing of it
+    found = summarise_bar(planned.scene, simulation, path)["pull_back_strength"]
+    assert found == {f"at-{free:g}": 0.5 * 2500.0 * 1000.0 * first_fall(outwards * velocity)}
+
+
+@pytest.mark.parametrize(
+    "changes", [{"bar.strength": 1e9}, {"boundary.right": {"type": "viscous"}}], ids=["unbroken", "no free end"]
+)
+def test_there_is_no_pull_back_without_a_spall_or_a_free_end(run, changes: dict) -> None:
+    planned, simulation, path = run(**gauges(0.0, 0.5, 1.0), **changes)
+
+    assert summarise_bar(planned.scene, simulation, path)["pull_back_strength"] == {}

@@ -1,0 +1,112 @@
+"""Meshes of disks for ParaView equal the record."""
+
+import h5py
+import meshio
+import numpy as np
+import pytest
+import pyvista
+
+from dembound.kinds.disks.kind import Disks
+from dembound.results.vtk import write_paraview
+
+
+@pytest.fixture(scope="module")
+def exported(small_run, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("vtu") / "paraview"
+    write_paraview(small_run, folder, Disks())
+    return folder
+
+
+def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Points and point data of a snapshot, written out column by column, and rounded to single precision."""
+    particles, snapshot = file["particles"], file["snapshots"][number]
+    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    flat, moved, linear = (
+        np.pad(each[:, :2], ((0, 0), (0, 1))) for each in (particles["position"][:], displacement, velocity)
+    )
+    data = {
+        "radii": particles["radius"][:],
+        "id": np.arange(len(velocity)),
+        "linVelVec": linear,
+        "angVelVec": velocity * [0.0, 0.0, 1.0],
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": moved,
+        "rotation": displacement[:, 2],
+        "brick_particle": particles["brick_particle"][:],
+        "column": np.zeros(len(velocity)),
+        "nbCracks": np.zeros(len(velocity)),
+        "damage": np.zeros(len(velocity)),
+    }
+    return flat + moved, {name: values.astype(np.float32) for name, values in data.items()}
+
+
+def test_meshio_and_vtk_read_back_what_the_record_holds(small_run, exported):
+    """Places in double and fields in single precision, one vertex per disk."""
+    mesh, of_vtk = meshio.read(exported / "particles_0001.vtu"), pyvista.read(exported / "particles_0001.vtu")
+    with h5py.File(small_run) as file:
+        points, data = expected(file, "0001")
+    assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
+    assert mesh.points.dtype == np.float64
+    assert of_vtk.n_cells == len(points)
+    assert set(of_vtk.celltypes) == {pyvista.CellType.VERTEX}
+    assert mesh.point_data.keys() == data.keys()
+    whole = {"id", "brick_particle", "nbCracks"}
+    for name, values in data.items():
+        kind = np.uint8 if name == "column" else np.int32 if name in whole else np.float32
+        assert mesh.point_data[name].dtype == kind
+        for found in (mesh, of_vtk):
+            np.testing.assert_array_equal(found.points, points)
+            np.testing.assert_array_equal(found.point_data[name], values, err_msg=name)
+
+
+def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
+    write_paraview(rich_run, tmp_path, Disks())
+    with h5py.File(rich_run) as file:
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(tmp_path / f"particles_{number}.vtu")
+            xx, yy, xy = snapshot["stress"][:].T
+            zero = np.zeros_like(xx)
+            # VTK's order: xx, yy, zz, xy, yz, xz
+            tensors = np.array([xx, yy, zero, xy, zero, zero], dtype=np.float32)
+            np.testing.assert_array_equal(mesh.point_data["stress"].T, tensors)
+            peaks = file["particles/peak_velocity"][:].astype(np.float32)
+            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], peaks)
+
+
+def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
+    write_paraview(cracked_run, tmp_path, Disks())
+    with h5py.File(cracked_run) as file:
+        bonds, cracks = file["particles/bonds"][:], {name: values[:] for name, values in file["cracks"].items()}
+        for number, snapshot in file["snapshots"].items():
+            data = meshio.read(tmp_path / f"particles_{number}.vtu").point_data
+            counted = np.zeros(len(bonds), dtype=int)
+            for time, pair in zip(cracks["time"], cracks["particles"], strict=True):
+                counted[pair] += time <= snapshot.attrs["time"]
+            np.testing.assert_array_equal(data["nbCracks"], counted)
+            np.testing.assert_array_equal(data["damage"], (counted / bonds).astype(np.float32))
+            np.testing.assert_array_equal(data["coordNumber"], snapshot["coordination"][:])
+        broken = [np.count_nonzero(cracks["time"] <= each.attrs["time"]) for each in file["snapshots"].values()]
+    assert 0 < broken[0] < broken[1] == len(cracks["time"])
+
+
+def test_contacts_are_lines_between_the_centres_of_their_disks(cracked_run, tmp_path):
+    write_paraview(cracked_run, tmp_path, Disks())
+    with h5py.File(cracked_run) as file:
+        counts = [len(snapshot["contacts/bonded"]) for snapshot in file["snapshots"].values()]
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(tmp_path / f"contacts_{number}.vtu")
+            disks = pyvista.read(tmp_path / f"particles_{number}.vtu")
+            contacts = {name: values[:] for name, values in snapshot["contacts"].items()}
+            ends = mesh.points.reshape(-1, 2, 3)
+            first, second = contacts["particles"].T
+            assert set(mesh.celltypes) == {pyvista.CellType.LINE}
+            np.testing.assert_array_equal(mesh.cell_connectivity, np.arange(2 * len(first)))
+            # places of up to 10 m
+            np.testing.assert_array_equal(ends[:, 0], disks.points[first])
+            np.testing.assert_allclose(ends[:, 1], disks.points[second], atol=1e-12)
+            np.testing.assert_array_equal(mesh.cell_data["particles"], contacts["particles"])
+            for name, column in (("normalForce", "normal_force"), ("shearForce", "shear_force")):
+                np.testing.assert_array_equal(mesh.cell_data[name], contacts[column].astype(np.float32))
+            np.testing.assert_array_equal(mesh.cell_data["bonded"], contacts["bonded"])
+            assert contacts["bonded"].any()
+    assert counts[1] < counts[0]  # where bonds have broken
