@@ -16,7 +16,7 @@ import numpy as np
 
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.contacts import UPDATED
-from dembound.kernels.tables import Bonded, LaneBonded, LaneRows, Links, NeighbourTable
+from dembound.kernels.tables import Bonded, DampedLinks, LaneBonded, LaneRows, Links, NeighbourTable, WatchedLinks
 from dembound.motion.simulation import Simulation
 
 COMPONENT = 40.0
@@ -87,6 +87,19 @@ def _(law: Links, count: int, ends: int, free: tuple[float, ...]) -> Cost:
     if isinstance(law.rows, LaneRows):
         return lane_cost(law.rows, count, lane_ends(law.rows, ends), free)
     return table_cost(law.rows, count)
+
+
+@law_cost.register
+def _(law: WatchedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost:
+    return law_cost(law.links, count, ends, free)  # contacts are compared with their limits at few steps
+
+
+@law_cost.register
+def _(law: DampedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost:
+    # every memory is read and written (16), and takes six operations; forces at rest (24) and layers (1) are read
+    memory, rest = law.memories.memory, law.memories.rest.shape[1] > 0
+    moved = 16.0 * memory.size + (24.0 if rest else 0.0) * count + memory.shape[1]
+    return law_cost(law.links, count, ends, free) + Cost(moved, 6.0 * memory.shape[0] * count)
 
 
 @law_cost.register

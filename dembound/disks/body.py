@@ -266,7 +266,7 @@ class DiskBody(Scene):
     def bonded(self) -> np.ndarray:
         """Whether each disk (m,) has a bond as built."""
         constants = brick_constants(self.ground, gaps_close=False, locked_in=0.0)
-        bonds = self.assembly.pairs[constants[self.assembly.contact_type, 7] > 0.0]
+        bonds = self.assembly.pairs[self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0]
         return np.bincount(bonds.ravel(), minlength=self.disk_count) > 0
 
     @property

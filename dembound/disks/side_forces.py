@@ -15,6 +15,7 @@ from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses,
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
+from dembound.laws.elastic import K
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly
 
@@ -154,8 +155,8 @@ def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndar
     if locked_in is not None:
         share = locked_in / ground.packed_pressure
         constants = brick_constants(ground, gaps_close=False, locked_in=share)[cut.contact_type]
-        overlap = np.maximum(constants[:, 3] - constants[:, 2], 0.0)
-        as_built[:2] = -constants[:, 5] * overlap * bonds.normal
+        overlap = np.maximum(constants[:, K.touch] - constants[:, K.rest], 0.0)
+        as_built[:2] = -constants[:, K.kn] * overlap * bonds.normal
         as_built -= per_stress @ (share * ground.moduli.emod * brick.stress)
     return per_stress, as_built
 

@@ -6,6 +6,8 @@ import os
 import shutil
 import time
 from contextlib import suppress
+from importlib.metadata import entry_points
+from importlib.util import find_spec
 from pathlib import Path
 
 import numba
@@ -19,9 +21,24 @@ LOGGER = logging.getLogger(__name__)
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 
-def sources_digest(folder: Path) -> str:
-    """A short hash of the contents of the Python files in a folder and below."""
-    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(folder.rglob("*.py")))).hexdigest()[:16]
+def sources_digest(*places: Path) -> str:
+    """A short hash of the contents of Python files: of single ones, and of those in folders and below."""
+    files = (path for place in places for path in ([place] if place.is_file() else sorted(place.rglob("*.py"))))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
+
+
+def registered_laws() -> list[Path]:
+    """The modules in which other packages register laws, whose functions become part of kernels."""
+    found = []
+    for entry in entry_points(group="dembound.laws"):
+        package, *inner = entry.module.split(".")
+        with suppress(ImportError, ValueError):
+            spec = find_spec(package)  # a whole name would import the package
+            roots = [] if spec is None else [Path(each) for each in spec.submodule_search_locations or []]
+            places = [root.joinpath(*inner) for root in roots] if inner else []
+            places += [] if spec is None or inner or spec.origin is None else [Path(spec.origin)]
+            found += [each for place in places for each in (place, place.with_suffix(".py")) if each.exists()]
+    return sorted(found)
 
 
 def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:
@@ -58,9 +75,9 @@ def kept_in(chosen: str, package: Path) -> Path:
 
 
 # Numba keeps compiled code until the file of the function itself changes. Kernels also contain functions from other
-# files, so the code compiled from each state of all files has a separate folder.
+# files, those of laws among them, so the code compiled from each state of all files has a separate folder.
 _HERE = Path(__file__).parent
 _KEPT = kept_in(numba.config.CACHE_DIR, _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
-_DIGEST = sources_digest(_HERE)
+_DIGEST = sources_digest(_HERE, _HERE.parent / "laws", *registered_laws())
 prune(_KEPT, _DIGEST)
 numba.config.CACHE_DIR = str(_KEPT / _DIGEST)  # type: ignore[attr-defined]

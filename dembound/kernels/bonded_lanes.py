@@ -9,7 +9,7 @@ from numba import njit
 
 from dembound.kernels import bonded as law
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, load, splat
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
@@ -19,7 +19,6 @@ from dembound.kernels.lane_step import (
     first_at,
     go_on,
     kick,
-    larger,
     local_damping,
     next_place,
     place_of,

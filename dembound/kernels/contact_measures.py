@@ -3,11 +3,13 @@
 import numpy as np
 from numba import njit, types
 
+from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
-from dembound.kernels.compiler.limits import factor_of, limit_of
+from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
+from dembound.kernels.pair_law import acts, bond_energy, bond_room, contact_energy, contact_room
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 
 TURN = 0.01
@@ -35,8 +37,7 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
     """Fill closest (chunks,) with the least `slack` of each chunk of pairs, negative."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state, slip = contacts.constants, contacts.began, contacts.state, contacts.slip
-    friction, tension, cohesion = limits.friction, limits.tension, limits.cohesion
-    tan_fa, geometry, factor = limits.tan_fa, limits.geometry, limits.factor
+    geometry = limits.geometry
     b = first.size
     for chunk in range(begin, end):
         room = np.inf
@@ -46,52 +47,38 @@ def _closest(begin, end, u, contacts, limits, keeps_slip, closest):
             nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants, began)
             if geometry == UPDATED:
                 room = min(room, TURN * distance - abs(nx * dy - ny * dx))
-            kn = constants[k, U(5)]
-            ks = constants[k, U(6)]
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-            if kn == 0.0:
-                pass  # without a contact beside the bond, which has no stiffness in shear either
-            elif constants[k, U(3)] >= distance:
-                room = min(room, overlap)
-                if ks > 0.0:
-                    stuck = shear - slip[c] if keeps_slip else shear
-                    most = limit_of(friction, k) * kn
-                    room = min(room, (most * overlap - ks * abs(stuck)) / (ks + most))
+            overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
+            if not acts(limits, constants, k):
+                pass
+            elif constants[k, P.touch] >= distance:
+                stuck = shear - slip[c] if keeps_slip else shear
+                room = min(room, contact_room(limits, constants, k, k, overlap, stuck))
             else:
                 room = min(room, -overlap)
             if state[c] == INTACT:
-                # per length of relative motion: tension k̄, bending k̄ R̄·(1/R̄), shear k̄_s
-                per_area = constants[k, U(10)]
-                bending = constants[k, U(9)] * constants[k, U(11)]
-                stress = constants[k, U(7)] * stretch * per_area
-                turned = bending * abs(u[U(2), j] - u[U(2), i] + began_with(began, k, U(2)))
-                normal = constants[k, U(7)] * per_area
-                sheared = constants[k, U(8)] * per_area
-                room = min(room, (factor_of(factor, c) * limit_of(tension, k) - stress - turned) / (2.0 * normal))
-                pressed = limit_of(tan_fa, k)
-                strength = factor_of(factor, c) * limit_of(cohesion, k) - stress * pressed - sheared * abs(shear)
-                room = min(room, strength / (sheared + normal * pressed))
+                turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
+                room = min(room, bond_room(limits, constants, k, k, factor_of(limits.factor, c), stretch, shear, turn))
         closest[chunk] = -room
 
 
 @njit(**MAKES)
-def strain_energy(u, contacts, geometry):
+def strain_energy(u, contacts, limits):
     """Energy (J) stored in contacts and in bonds at displacements u (3, n), with shear and slip of the last push.
 
     With the geometry REFERENCE shear and slip are not read.
     """
     stored = np.empty((CHUNKS, 2))
-    _strain_energies(u, contacts, geometry, stored)
+    _strain_energies(u, contacts, limits, stored)
     return column_sum(stored, 0), column_sum(stored, 1)
 
 
 @in_chunks
 @njit(**FAST)
-def _strain_energies(begin, end, u, contacts, geometry, stored):
+def _strain_energies(begin, end, u, contacts, limits, stored):
     """Fill stored (chunks, 2) with the `strain_energy` of contacts and of bonds in each chunk of pairs."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state = contacts.constants, contacts.began, contacts.state
-    all_shear, slip = contacts.shear, contacts.slip
+    all_shear, slip, geometry = contacts.shear, contacts.slip, limits.geometry
     b = first.size
     for chunk in range(begin, end):
         in_contacts = 0.0
@@ -105,18 +92,17 @@ def _strain_energies(begin, end, u, contacts, geometry, stored):
             else:
                 _, _, _, stretch = updated_stretch(k, dx, dy, constants, began)
                 shear = all_shear[c]
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
             slid = shear
-            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # open, as at the start
+            if constants[k, P.touch] < constants[k, P.rest] and overlap <= 0.0:  # open, as at the start
                 overlap = 0.0
                 slid = 0.0
             elif geometry != REFERENCE:
                 overlap = max(overlap, 0.0)
                 slid -= slip[c]
-            in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
+            in_contacts += contact_energy(limits, constants, k, overlap, slid)
             if intact:
                 turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
-                in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
-                in_bonds += 0.5 * constants[k, U(9)] * turn * turn
+                in_bonds += bond_energy(limits, constants, k, stretch, shear, turn)
         stored[chunk, 0] = in_contacts
         stored[chunk, 1] = in_bonds

@@ -5,22 +5,21 @@ A pair's motion is three numbers: the distance of the centres, the tangential di
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which rotates with the pair automatically.
 
-A row of constants (12,) of a pair with first disk i and second disk j:
-
-    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
-
-d is the vector from i to j at the start, touch the distance at which the contact begins to act; then the stiffnesses of
-the contact and of the bond. Under a stress at rest a pair has a stretch, shear and rotation from the start (began.py).
+The constants of pairs are those of kernels/columns.py and of the law, whose functions (pair_law.py) are called. Under a
+stress at rest a pair has a stretch, shear and rotation from the start (compiler/start_strain.py).
 Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
 """
 
 import numpy as np
 from numba import njit
 
+from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.compiler.limits import factor_of, limit_of
+from dembound.kernels.compiler.lanes import choose, larger
+from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
+from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -49,31 +48,18 @@ arcsin(½ωΔt) per step: 2e-6 for waves of 1000 steps a period. A chain of cont
 
 
 @njit(**FAST, inline="always")
-def _bond_state(c, Fn, Fs, M, per_area, per_section, limits, k):
-    """State of the intact bond of pair c under its force and moment; per_area 1/A, per_section R/I; k its type."""
-    factor = factor_of(limits.factor, c)
-    stress = Fn * per_area
-    if stress + abs(M) * per_section >= factor * limit_of(limits.tension, k):
-        after = TENSION
-    elif abs(Fs) * per_area >= factor * limit_of(limits.cohesion, k) - stress * limit_of(limits.tan_fa, k):
-        after = SHEAR
-    else:
-        after = INTACT
-    return after
-
-
-@njit(**FAST, inline="always")
-def closing_work(stiffness, before, now, had_closed, push):
+def closing_work(limits, constants, k, before, now, had_closed, push):
     """Energy (J) taken by a contact's normal force in a step beyond the stored energy; negative if released.
 
-    stiffness : k_n, N/m; before, now : overlap (m) before and after the step, negative for a gap; had_closed : whether
-    the force of the step before was a first push (`CLOSING`); push : the force now, N. Forces at whole steps do the
-    work ½(N⁻ + N)(now − before), while ½k_n·now² − ½k_n·before² is stored, for overlaps only. They differ where a
-    contact opens or closes, by ½k_n·|before·now|, and before and after a first push.
+    before, now : overlap (m) before and after the step, negative for a gap, numbers or lanes; had_closed : whether the
+    force of the step before was a first push (`CLOSING`); push : the force now, N. Forces at whole steps do the work
+    ½(N⁻ + N)(now − before), while the energy of the overlaps, if positive, is stored. They differ where a contact opens
+    or closes, and after a first push.
     """
-    closed, closes = max(before, 0.0), max(now, 0.0)
-    was = (CLOSING if had_closed else 1.0) * stiffness * closed
-    return 0.5 * ((was + push) * (now - before) - stiffness * (closes - closed) * (closes + closed))
+    closed, closes = larger(before, 0.0), larger(now, 0.0)
+    was = normal(limits, constants, k, closed)
+    was = choose(had_closed, CLOSING * was, was)
+    return 0.5 * ((was + push) * (now - before)) - stored_between(limits, constants, k, closed, closes)
 
 
 @njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
@@ -94,27 +80,28 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         was = all_shear[c]
         nx, ny, distance, stretch, shear = updated_strain(i, j, k, dx, dy, was, v, step, constants, began)
         all_shear[c] = shear
-    overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-    arm_i = 0.5 * distance + constants[k, U(4)]
+    overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
+    arm_i = 0.5 * distance + constants[k, P.offset]
     arm_j = distance - arm_i
-    N = constants[k, U(5)] * overlap
-    S = constants[k, U(6)] * (shear - all_slip[c])
+    slip = all_slip[c]
+    N = normal(limits, constants, k, overlap)
+    S = shear_of(limits, constants, k, shear, slip)
     opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
-    if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
+    if geometry != REFERENCE or constants[k, P.touch] < constants[k, P.rest]:
         N = max(N, 0.0)
         overlapped = overlap + step * opening  # one step earlier
         if overlapped <= 0.0:
             N *= CLOSING
         if closed[c] != 0 or (overlapped <= 0.0) != (overlap <= 0.0):
-            lost[2] += closing_work(constants[k, U(5)], overlapped, overlap, closed[c] != 0, N)
+            lost[2] += closing_work(limits, constants, k, overlapped, overlap, closed[c] != 0, N)
             closed[c] = overlapped <= 0.0 < overlap
-        most = limit_of(limits.friction, k) * N
+        most = most_shear(limits, k, N)
         if abs(S) > most:
-            before = constants[k, U(6)] * (was - all_slip[c])
+            before = shear_of(limits, constants, k, was, slip)
             S = np.copysign(most, S)
-            slip = shear - (S / constants[k, U(6)])
-            rubbed = 0.5 * (before + S) * (slip - all_slip[c])
-            all_slip[c] = slip
+            slid = slip_at(limits, constants, k, shear, S)
+            rubbed = 0.5 * (before + S) * (slid - slip)
+            all_slip[c] = slid
             if rubbed < 0.0:  # the force has changed its sign within the step
                 lost[2] += rubbed
                 rubbed = 0.0
@@ -122,18 +109,17 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     moment = 0.0
     if intact:
         turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
-        Fn = constants[k, U(7)] * stretch
-        Fs = constants[k, U(8)] * shear
-        M = constants[k, U(9)] * turn
-        state[c] = _bond_state(c, Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits, k)
-        if state[c] != INTACT and contacts.kept[c] != MAY_BREAK:
-            state[c] = INTACT
+        Fn, Fs, M = bond(limits, constants, k, stretch, shear, turn)
+        torn, cut = breaks(limits, constants, k, k, factor_of(limits.factor, c), Fn, Fs, M)
+        if (torn or cut) and contacts.kept[c] != MAY_BREAK:
+            torn = cut = False
             contacts.kept[c] = REACHED
-        if state[c] == INTACT:
+        if not torn and not cut:
             pull += Fn
             S += Fs
             moment = M
         else:
+            state[c] = TENSION if torn else SHEAR
             cracked[c] = number
             all_shear[c] = shear
             turning = v[U(2), j] - v[U(2), i]
@@ -141,7 +127,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             if geometry == BONDED:  # the contact changes to the updated geometry
                 _, _, _, longer = updated_stretch(k, dx, dy, constants, began)
                 later = max(overlap + stretch - longer, 0.0)
-                broken += 0.5 * constants[k, U(5)] * (max(overlap, 0.0) ** 2 - later**2)
+                broken += stored_between(limits, constants, k, later, max(overlap, 0.0))
             lost[1 if broken > 0.0 else 2] += broken
             lost[3] += 1.0
     force[U(0), c] = pull * nx - S * ny
@@ -237,6 +223,6 @@ def start_from_displacements(u, contacts, keeps_slip=False):
         i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
         _, _, _, stretch, sheared = reference_strain(i, j, k, dx, dy, u, constants, began)
         shear[c] = sheared
-        if keeps_slip and constants[k, U(3)] >= constants[k, U(2)]:
+        if keeps_slip and constants[k, P.touch] >= constants[k, P.rest]:
             continue
-        slip[c] = sheared if constants[k, U(3)] - constants[k, U(2)] < stretch else 0.0
+        slip[c] = sheared if constants[k, P.touch] - constants[k, P.rest] < stretch else 0.0

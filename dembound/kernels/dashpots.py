@@ -7,6 +7,7 @@ PFC's linear model. Velocities are those half a step before the displacements (`
 
 from numba import njit
 
+from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, U
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
@@ -16,20 +17,21 @@ from dembound.kernels.law import finish as finish_law
 from dembound.kernels.law import is_law
 from dembound.kernels.law import move as move_law
 from dembound.kernels.law import push as push_law
+from dembound.kernels.pair_law import normal
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
 from dembound.kernels.tables import Dashed
 
 
 @in_chunks
 @njit(**FAST)
-def _drag(first_chunk, last_chunk, u, v, step, contacts, geometry, viscosity, drag, taken):
+def _drag(first_chunk, last_chunk, u, v, step, contacts, limits, viscosity, drag, taken):
     """Add the forces of dashpots to those of closed contacts; taken (chunks,) gets the energy (J) of the last step.
 
     It is the work of forces at whole steps, half of it before and half after each.
     """
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state, force = contacts.constants, contacts.began, contacts.state, contacts.force
-    b = first.size
+    b, geometry = first.size, limits.geometry
     for chunk in range(first_chunk, last_chunk):
         lost = 0.0
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
@@ -41,7 +43,7 @@ def _drag(first_chunk, last_chunk, u, v, step, contacts, geometry, viscosity, dr
                 nx, ny, distance, stretch, _ = reference_strain(i, j, k, dx, dy, u, constants, began)
             else:
                 nx, ny, distance, stretch = updated_stretch(k, dx, dy, constants, began)
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
             if overlap <= 0.0 and drag[c, U(0)] == 0.0 and drag[c, U(1)] == 0.0:
                 continue
             closing = nx * (v[U(0), i] - v[U(0), j]) + ny * (v[U(1), i] - v[U(1), j])
@@ -49,12 +51,12 @@ def _drag(first_chunk, last_chunk, u, v, step, contacts, geometry, viscosity, dr
             push = 0.0
             rub = 0.0
             if overlap > 0.0:
-                push = max(viscosity[c, U(0)] * closing, -constants[k, U(5)] * overlap)
+                push = max(viscosity[c, U(0)] * closing, -normal(limits, constants, k, overlap))
                 rub = viscosity[c, U(1)] * sliding
             lost += 0.5 * step * ((drag[c, U(0)] + push) * closing + (drag[c, U(1)] + rub) * sliding)
             drag[c, U(0)] = push
             drag[c, U(1)] = rub
-            arm_i = 0.5 * distance + constants[k, U(4)]
+            arm_i = 0.5 * distance + constants[k, P.offset]
             force[U(0), c] -= push * nx + rub * ny
             force[U(1), c] -= push * ny - rub * nx
             force[U(2), c] += arm_i * rub
@@ -78,7 +80,7 @@ def check(dashed, u, u_next, v):
 def push(dashed, u, u_next, v, number, step, work):
     """Compute the forces of the law and of dashpots, which add what they take to the energy taken by damping."""
     breaks = push_law(dashed.law, u, u_next, v, number, step, work)
-    _drag(u, v, step, dashed.contacts, dashed.geometry, dashed.viscosity, dashed.drag, dashed.taken)
+    _drag(u, v, step, dashed.contacts, dashed.limits, dashed.viscosity, dashed.drag, dashed.taken)
     for chunk in range(dashed.taken.size):
         work[0, 1] += dashed.taken[chunk]
     return breaks

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, magnitude, splat, store
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.elastic import fill_forces, move_rows
 from dembound.kernels.held_lanes import move_pair, moving_pair
@@ -24,7 +24,6 @@ from dembound.kernels.lane_step import (
     blocks_of,
     go_on,
     kick,
-    larger,
     local_damping,
     next_place,
     place_of,

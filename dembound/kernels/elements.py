@@ -14,8 +14,7 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, combine, combine_more, load, store
-from dembound.kernels.lane_step import larger
+from dembound.kernels.compiler.lanes import LANES, combine, combine_more, larger, load, store
 from dembound.kernels.tables import ALONG, Shape
 
 WITHIN: dict[str, Any] = FAST | {"forceinline": True}

@@ -23,12 +23,6 @@ def local_damping(v, f, damp):
     return choose(at_most(magnitude(v), 0.0), 0.0, with_sign(damp * magnitude(f), v))
 
 
-@njit(**INLINED)
-def larger(a, b):
-    """The larger of two numbers in each lane."""
-    return choose(at_most(a, b), b, a)
-
-
 @njit(**FAST)
 def first_at(numbers, least):
     """Index of the first of ascending numbers that is not below the least."""

@@ -9,25 +9,22 @@ from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_strain import pair, reference_strain
 
-BONDS = 3
-"""Number of the limits of contacts, after which those of bonds follow."""
-
 
 @njit(**FAST)
-def least_factors(u, rest, contacts, slopes, allowed, strength, least, where):
+def least_factors(u, rest, contacts, slopes, allowed, bonds, strength, least, where):
     """Find in each chunk of pairs the least factor f at which a pair reaches a limit with rest + f·(u − rest).
 
     A limit of a pair with stretch e, shear s and turn θ is a·e + b·s + c·θ = d: slopes (p, m, 3) has a, b, c of the m
     limits of each type of contact, allowed (p, m) their d, infinite for none; strength : 1.0, or factors (b,) of d in
-    the limits of bonds, from number `BONDS` on. u, rest : (3, slots) displacements. least (chunks,) receives the
+    the limits of bonds, from number `bonds` on. u, rest : (3, slots) displacements. least (chunks,) receives the
     factor, infinite for none, and where (chunks, 2) the pair and its limit.
     """
-    _least_factors(u, rest, contacts, slopes, allowed, strength, least, where)
+    _least_factors(u, rest, contacts, slopes, allowed, bonds, strength, least, where)
 
 
 @in_chunks
 @njit(**FAST)
-def _least_factors(begin, end, u, rest, contacts, slopes, allowed, strength, least, where):
+def _least_factors(begin, end, u, rest, contacts, slopes, allowed, bonds, strength, least, where):
     first, second, contact_type, constants = contacts.first, contacts.second, contacts.contact_type, contacts.constants
     began = contacts.began
     b = first.size
@@ -55,7 +52,7 @@ def _least_factors(begin, end, u, rest, contacts, slopes, allowed, strength, lea
                 if grows > 0.0:
                     still = to_stretch * still_stretch + to_shear * still_shear + to_turn * still_turn
                     most = allowed[k, m]
-                    if number >= BONDS:
+                    if number >= bonds:
                         most *= factor_of(strength, c)
                     factor = (most - still) / grows
                     if factor < lowest:

@@ -7,6 +7,7 @@ and, where intact bonds keep the geometry of the start, from then on.
 import numpy as np
 from numba import njit
 
+from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
 from dembound.kernels.compiler.lanes import (
     LANES,
@@ -14,6 +15,7 @@ from dembound.kernels.compiler.lanes import (
     bits,
     byte_of,
     choose,
+    larger,
     load,
     magnitude,
     note_bits,
@@ -23,11 +25,12 @@ from dembound.kernels.compiler.lanes import (
     where_equal,
     with_sign,
 )
-from dembound.kernels.compiler.limits import factors_of, limit_of
+from dembound.kernels.compiler.limits import factors_of
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
-from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
-from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
+from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, closing_work, push_pair
+from dembound.kernels.lane_step import INLINED, next_place, place_of
+from dembound.kernels.pair_law import acts, bond, breaks, most_shear, normal, shear_of, slip_at
 
 _ALL = np.uint8(2**LANES - 1)
 _INTACT = np.uint8(INTACT)
@@ -49,22 +52,22 @@ def _apart(u, i, j):
 
 
 @njit(**INLINED)
-def _slide(normal, arms, i, j, v):
+def _slide(way, arms, i, j, v):
     """Rate (m/s) of the shear of pairs."""
-    (nx, ny), (arm_i, arm_j) = normal, arms
+    (nx, ny), (arm_i, arm_j) = way, arms
     dvx, dvy = _apart(v, i, j)
     return nx * dvy - ny * dvx - arm_i * load(v[2], i) - arm_j * load(v[2], j)
 
 
 @njit(**INLINED)
 def _contact(
-    k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction, taken
+    k, q, c, i, j, way, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits, kind, taken
 ):
     """Normal and shear force of contacts; their slip and closing are stored; see `_act`."""
-    overlap = (k[q, U(3)] - k[q, U(2)]) - stretch
+    overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
     slip = load(contacts.slip, c)
-    N = k[q, U(5)] * overlap
-    S = k[q, U(6)] * (shear - slip)
+    N = normal(limits, k, q, overlap)
+    S = shear_of(limits, k, q, shear, slip)
     if gives_way:
         overlapped = overlap + step * opening
         was_open = at_most(overlapped, 0.0)
@@ -74,15 +77,15 @@ def _contact(
         closed, was, now = byte_of(had_closed), byte_of(was_open), byte_of(at_most(overlap, 0.0))
         passes = np.uint8((was ^ now | closed) & exists)
         if passes != 0:
-            passed = _closing_work(k[q, U(5)], overlapped, overlap, had_closed, N)
+            passed = closing_work(limits, k, q, overlapped, overlap, had_closed, N)
             _add(taken, LANES, choose(bits(passes), passed, 0.0))
             note_bits(contacts.closed, c, bits(np.uint8(was & ~now & exists)))
-        most = friction * N
+        most = most_shear(limits, kind, N)
         stays = at_most(magnitude(S), most)
         if (byte_of(stays) & exists) != exists:
-            before = k[q, U(6)] * (shear - step * _slide(normal, arms, i, j, v) - slip)
+            before = shear_of(limits, k, q, shear - step * _slide(way, arms, i, j, v), slip)
             S = choose(stays, S, with_sign(most, S))
-            slid = choose(stays, slip, shear - S * (1.0 / k[q, U(6)]))
+            slid = choose(stays, slip, slip_at(limits, k, q, shear, S))
             rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
             store(contacts.slip, c, slid)
             _add(taken, 0, larger(rubbed, 0.0))
@@ -94,29 +97,6 @@ def _contact(
 def _add(sums, first, values):
     """Add eight numbers to those in an array (n,) from index `first` on."""
     store(sums, U(first), load(sums, U(first)) + values)
-
-
-@njit(**INLINED)
-def _closing_work(stiffness, before, now, had_closed, push):
-    """Energy (J) that contacts take as they open and close, see contacts.closing_work."""
-    closed, closes = larger(before, 0.0), larger(now, 0.0)
-    was = choose(had_closed, CLOSING * stiffness, stiffness) * closed
-    return 0.5 * ((was + push) * (now - before) - stiffness * ((closes - closed) * (closes + closed)))
-
-
-@njit(**INLINED)
-def _bond(k, q, c, stretch, shear, bent, whole, limits, kind):
-    """Normal and shear force and moment of bonds of a type from place c on, and the bits of those that would break."""
-    normal = k[q, U(7)] * stretch
-    sheared = k[q, U(8)] * shear
-    moment = k[q, U(9)] * bent
-    stress = normal * k[q, U(10)]
-    factor = factors_of(limits.factor, c)
-    torn = at_most(factor * limit_of(limits.tension, kind), stress + magnitude(moment) * k[q, U(11)])
-    strength = factor * limit_of(limits.cohesion, kind) - stress * limit_of(limits.tan_fa, kind)
-    cut = at_most(strength, magnitude(sheared) * k[q, U(10)])
-    breaks = byte_of(torn) | byte_of(cut)
-    return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
 
 
 @njit(**INLINED)
@@ -134,30 +114,33 @@ def _store_forces(force, c, exists, fx, fy, on_i, on_j):
 
 @njit(**INLINED)
 def _act(
-    c, q, i, j, block, exists, normal, arms, strain, opening, gives_way, follows,
+    c, q, i, j, block, exists, way, arms, strain, opening, gives_way, follows,
     u, v, step, number, pairs, contacts, limits, taken, lost,
 ):  # fmt: skip
     """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
 
-    normal, arms : directions and lever arms, numbers or lanes; opening : speed at which the disks part, where a contact
-    gives way; follows : whether the geometry follows the motion. taken (16,) is advanced by the energies (J) that
-    friction, and contacts that open and close, take in the eight pairs; where these are computed in turn lost (4,).
+    way, arms : directions of normals and lever arms, numbers or lanes; opening : speed at which the disks part, where a
+    contact gives way; follows : whether the geometry follows the motion. taken (16,) is advanced by the energies (J)
+    that friction, and contacts that open and close, take in the eight pairs; where these are computed in turn lost
+    (4,).
     """
     k, kind = pairs.constants, U(pairs.contact_type[q])
     nothing = splat(0.0)
-    (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
+    (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = way, arms, strain
     whole = where_equal(contacts.state, c, _INTACT)
     intact = byte_of(whole) & exists
     pull, side, moment = nothing, nothing, nothing
     if intact != 0:
-        pull, side, moment, breaks = _bond(k, q, c, stretch, shear, bent, whole, limits, kind)
-        if (breaks & intact) != 0:
+        pull, side, moment = bond(limits, k, q, stretch, shear, bent)
+        torn, cut = breaks(limits, k, q, kind, factors_of(limits.factor, c), pull, side, moment)
+        if ((byte_of(torn) | byte_of(cut)) & intact) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost)
             return
-    if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
+        pull, side, moment = choose(whole, pull, 0.0), choose(whole, side, 0.0), choose(whole, moment, 0.0)
+    if acts(limits, k, q):
         N, S = _contact(
-            k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts,
-            limit_of(limits.friction, kind), taken,
+            k, q, c, i, j, way, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits, kind,
+            taken,
         )  # fmt: skip
         pull -= N
         side += S
@@ -172,16 +155,16 @@ def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, li
     """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
     c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
     k = pairs.constants
-    nx, ny = k[q, U(12)], k[q, U(13)]
-    rest = k[q, U(2)]
-    arm_i = 0.5 * rest + k[q, U(4)]
+    nx, ny = pairs.way[q, U(0)], pairs.way[q, U(1)]
+    rest = k[q, P.rest]
+    arm_i = 0.5 * rest + k[q, P.offset]
     arm_j = rest - arm_i
     dx, dy = _apart(u, i, j)
     turn_i, turn_j = load(u[2], i), load(u[2], j)
     stretch = nx * dx + ny * dy + began_with(pairs.began, q, U(0))
     shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j + began_with(pairs.began, q, U(1))
     strain = stretch, shear, turn_j - turn_i + began_with(pairs.began, q, U(2))
-    gives_way = limits.geometry != REFERENCE or k[q, U(3)] < rest
+    gives_way = limits.geometry != REFERENCE or k[q, P.touch] < rest
     opening = splat(0.0)
     if gives_way:
         dvx, dvy = _apart(v, i, j)
@@ -199,14 +182,14 @@ def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limi
     k = pairs.constants
     dx, dy = _apart(u, i, j)
     dvx, dvy = _apart(v, i, j)
-    x = k[q, U(0)] + dx
-    y = k[q, U(1)] + dy
+    x = k[q, P.x] + dx
+    y = k[q, P.y] + dy
     distance = root(x * x + y * y)
-    stretch = ((k[q, U(0)] + x) * dx + (k[q, U(1)] + y) * dy) / (distance + k[q, U(2)])
+    stretch = ((k[q, P.x] + x) * dx + (k[q, P.y] + y) * dy) / (distance + k[q, P.rest])
     stretch += began_with(pairs.began, q, U(0))
     inverse = 1.0 / distance
     nx, ny = x * inverse, y * inverse
-    arm_i = 0.5 * distance + k[q, U(4)]
+    arm_i = 0.5 * distance + k[q, P.offset]
     arm_j = distance - arm_i
     shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
     strain = stretch, shear, load(u[2], j) - load(u[2], i) + began_with(pairs.began, q, U(2))

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from dembound.kernels.columns import P
 from dembound.kernels.common import FAST, U
 from dembound.kernels.compiler.start_strain import began_with
 
@@ -19,11 +20,11 @@ def pair(c, u, first, second, contact_type, constants):
 @njit(**FAST, inline="always")
 def reference_strain(i, j, k, dx, dy, u, constants, began):
     """Normal at the start, distance, stretch and shear of a pair for small displacements."""
-    rest = constants[k, U(2)]
-    nx = constants[k, U(0)] / rest
-    ny = constants[k, U(1)] / rest
+    rest = constants[k, P.rest]
+    nx = constants[k, P.x] / rest
+    ny = constants[k, P.y] / rest
     stretch = nx * dx + ny * dy + began_with(began, k, U(0))
-    arm_i = 0.5 * rest + constants[k, U(4)]
+    arm_i = 0.5 * rest + constants[k, P.offset]
     shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j] + began_with(began, k, U(1))
     return nx, ny, rest, stretch, shear
 
@@ -34,18 +35,19 @@ def updated_stretch(k, dx, dy, constants, began):
 
     The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses, and that at the start.
     """
-    x = constants[k, U(0)]
-    y = constants[k, U(1)]
-    rest = constants[k, U(2)]
+    x = constants[k, P.x]
+    y = constants[k, P.y]
+    rest = constants[k, P.rest]
     distance = np.sqrt((x + dx) * (x + dx) + (y + dy) * (y + dy))
     stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest) + began_with(began, k, U(0))
-    return (x + dx) / distance, (y + dy) / distance, distance, stretch
+    inverse = 1.0 / distance
+    return (x + dx) * inverse, (y + dy) * inverse, distance, stretch
 
 
 @njit(**FAST, inline="always")
 def slide(i, j, k, nx, ny, distance, v, constants):
     """Rate (m/s) of the shear of a pair with normal and distance."""
-    arm_i = 0.5 * distance + constants[k, U(4)]
+    arm_i = 0.5 * distance + constants[k, P.offset]
     across = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
     return across - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j]
 

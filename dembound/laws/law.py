@@ -2,9 +2,11 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+
+from dembound.kernels.columns import STRAIN, Column, P
 
 
 def lattice_moduli(
@@ -68,11 +70,35 @@ class Law(ABC):
     Attributes
     ----------
     name : value of `material.law`.
+    columns : constants of pairs, those of kernels.columns.PLACE first.
     has_history : whether contacts open, slide and break (kernels/contacts.py).
     """
 
     name: ClassVar[str]
+    columns: ClassVar[tuple[Column, ...]]
     has_history: ClassVar[bool] = False
+
+    @property
+    def width(self) -> int:
+        """Number of constants of a pair, its place included."""
+        return len(self.columns)
+
+    @property
+    def stiff(self) -> list[int]:
+        """Numbers of the columns of stiffnesses, which half pairs have half of, and contacts in series less of."""
+        return [number for number, each in enumerate(self.columns) if each.in_half == 0.5]
+
+    def column(self, constants: np.ndarray, name: str) -> np.ndarray:
+        """One of the constants of pairs (p, c or more) by name; 0 under a law that does not have it."""
+        names = [each.name for each in self.columns]
+        return constants[:, names.index(name)] if name in names else np.zeros(len(constants))
+
+    def stiffnesses(self, constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffnesses (3, p) of contacts and of bonds against stretch, shear and rotation; of closed contacts alone."""
+        closed = constants[:, P.touch] >= constants[:, P.rest]
+        contacts = [self.column(constants, name) for name in ("kn", "ks")]
+        bonds = [self.column(constants, name) for name in ("bond_kn", "bond_ks", "bending")]
+        return np.where(closed, [*contacts, np.zeros(len(constants))], 0.0), np.array(bonds)
 
     @property
     def is_linear(self) -> bool:
@@ -83,6 +109,10 @@ class Law(ABC):
     def linear(self) -> str:
         """Name of the linear law that has the same stiffness at rest; required for a history-dependent law."""
         return self.name
+
+    @abstractmethod
+    def without_limits(self, geometry: int) -> Any:
+        """Limits that no contact or bond reaches, in a geometry of kernels/contacts.py."""
 
     @abstractmethod
     def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
@@ -115,7 +145,7 @@ class Law(ABC):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 15) of pairs, in columns: see kernels/contacts.py and, last, kernels/compiler/start_strain.py.
+        """Constants of pairs: their place, those of the law, and the strain from the start, which is none.
 
         Parameters
         ----------
@@ -125,29 +155,28 @@ class Law(ABC):
         bonded : whether the pairs have bonds.
         gaps_close : whether pairs with a gap have a contact that acts once it closes; not in laws without history.
         locked_in : part of the overlaps that causes a force from the start; with 0, overlapping disks just touch.
+
+        Returns (b, c + 3), with the c columns of `columns`.
         """
         distance = np.hypot(*vectors.T)
-        pair = self.springs(moduli, radius_i, radius_j)
         closed = touching(radius_i, radius_j, distance)
-        acts = closed | gaps_close
         overlap = np.maximum(radius_i + radius_j - distance, 0.0)
-        has_bond = float(bonded)
         return np.column_stack(
             [
                 vectors,
                 distance,
                 np.where(closed, distance + locked_in * overlap, radius_i + radius_j),
                 (radius_i - radius_j) / 2.0,
-                np.where(acts, pair.contact_normal, 0.0),
-                np.where(acts, pair.contact_shear, 0.0),
-                has_bond * pair.bond_normal,
-                has_bond * pair.bond_shear,
-                has_bond * pair.bending,
-                1.0 / pair.area,
-                1.5 / pair.bond_radius**2,  # R̄/J
-                np.zeros((len(vectors), 3)),  # unstrained
+                self.own_constants(moduli, radius_i, radius_j, closed | gaps_close, bonded=bonded),
+                np.zeros((len(vectors), STRAIN)),
             ]
         )
+
+    @abstractmethod
+    def own_constants(
+        self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, acts: np.ndarray, *, bonded: bool
+    ) -> np.ndarray:
+        """Constants of pairs in the columns after their place; acts : (b,) whether each has a contact, see above."""
 
 
 def touching(radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> np.ndarray:

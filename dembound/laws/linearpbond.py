@@ -1,11 +1,20 @@
 """PFC's linear parallel-bond law: contacts without tension and with friction, bonds with a strength.
 
-At rest its stiffness is that of the elastic law; slip, opening and breaking are computed in kernels/contacts.py.
+A contact resists overlap and the part of the motion of its surfaces that has not slid, N = k_n a and S = k_s (s − slip)
+up to |S| = μN. A bond resists stretch e, shear s and rotation θ from the start, and breaks where σ + |M|R̄/J reaches
+pb_ten or |τ| reaches pb_coh − σ tan pb_fa, with σ = k̄_n e and τ = k̄_s s. At rest the stiffness is that of the elastic
+law, whose constants it has.
 """
 
 from typing import ClassVar
 
-from dembound.laws.elastic import Elastic
+import numpy as np
+
+from dembound.kernels.compiler.lanes import at_most, magnitude
+from dembound.kernels.compiler.limits import limit_of
+from dembound.kernels.pair_law import is_pair_law, part_of_law
+from dembound.kernels.tables import Limits
+from dembound.laws.elastic import Elastic, K
 
 
 class LinearPBond(Elastic):
@@ -18,3 +27,157 @@ class LinearPBond(Elastic):
     def linear(self) -> str:
         """Name of the elastic law."""
         return Elastic.name
+
+
+@part_of_law
+def acts(limits, constants, k):
+    """See pair_law.acts."""
+    return constants[k, K.kn] > 0.0 or constants[k, K.ks] > 0.0
+
+
+@part_of_law
+def normal(limits, constants, k, overlap):
+    """N = k_n a, see pair_law.normal."""
+    return constants[k, K.kn] * overlap
+
+
+@part_of_law
+def stored_between(limits, constants, k, before, now):
+    """½k_n (a₂² − a₁²), see pair_law.stored_between."""
+    return 0.5 * (constants[k, K.kn] * ((now - before) * (now + before)))
+
+
+@part_of_law
+def shear_of(limits, constants, k, shear, slip):
+    """S = k_s (s − slip), see pair_law.shear_of."""
+    return constants[k, K.ks] * (shear - slip)
+
+
+@part_of_law
+def slip_at(limits, constants, k, shear, force):
+    """The slip s − S/k_s, see pair_law.slip_at."""
+    return shear - force * (1.0 / constants[k, K.ks])
+
+
+@part_of_law
+def most_shear(limits, kind, push):
+    """Friction, μN, see pair_law.most_shear."""
+    return limit_of(limits.friction, kind) * push
+
+
+@part_of_law
+def bond(limits, constants, k, stretch, shear, turn):
+    """Forces of three springs, see pair_law.bond."""
+    return constants[k, K.bond_kn] * stretch, constants[k, K.bond_ks] * shear, constants[k, K.bending] * turn
+
+
+@part_of_law
+def breaks(limits, constants, k, kind, factor, pull, side, moment):
+    """Stresses at the edge of the bond beside its strengths, see pair_law.breaks."""
+    stress = pull * constants[k, K.per_area]
+    edge = stress + magnitude(moment) * constants[k, K.per_section]
+    strength = factor * limit_of(limits.cohesion, kind) - stress * limit_of(limits.tan_fa, kind)
+    sheared = magnitude(side) * constants[k, K.per_area]
+    return at_most(factor * limit_of(limits.tension, kind), edge), at_most(strength, sheared)
+
+
+@part_of_law
+def contact_energy(limits, constants, k, overlap, slid):
+    """½k_n a² + ½k_s s², see pair_law.contact_energy."""
+    return 0.5 * (constants[k, K.kn] * overlap * overlap + constants[k, K.ks] * slid * slid)
+
+
+@part_of_law
+def bond_energy(limits, constants, k, stretch, shear, turn):
+    """Energy of three springs, see pair_law.bond_energy."""
+    along = constants[k, K.bond_kn] * stretch * stretch + constants[k, K.bond_ks] * shear * shear
+    return 0.5 * along + 0.5 * constants[k, K.bending] * turn * turn
+
+
+@part_of_law
+def contact_room(limits, constants, k, kind, overlap, stuck):
+    """Up to no overlap, and up to friction, which changes with the overlap, too; see pair_law.contact_room."""
+    room = overlap
+    ks = constants[k, K.ks]
+    if ks > 0.0:
+        most = limit_of(limits.friction, kind) * constants[k, K.kn]
+        room = min(room, (most * overlap - ks * abs(stuck)) / (ks + most))
+    return room
+
+
+@part_of_law
+def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
+    """Up to the strengths; stretch, shear and R̄θ change by at most the relative motion; see pair_law.bond_room."""
+    per_area = constants[k, K.per_area]
+    stress = constants[k, K.bond_kn] * stretch * per_area
+    turned = constants[k, K.bending] * constants[k, K.per_section] * abs(turn)
+    normal = constants[k, K.bond_kn] * per_area  # per length: tension k̄ and bending k̄ R̄·(1/R̄) alike
+    sheared = constants[k, K.bond_ks] * per_area
+    pressed = limit_of(limits.tan_fa, kind)
+    torn = (factor * limit_of(limits.tension, kind) - stress - turned) / (2.0 * normal)
+    strength = factor * limit_of(limits.cohesion, kind) - stress * pressed - sheared * abs(shear)
+    return min(torn, strength / (sheared + normal * pressed))
+
+
+is_pair_law(
+    Limits,
+    acts=acts,
+    normal=normal,
+    stored_between=stored_between,
+    shear_of=shear_of,
+    slip_at=slip_at,
+    most_shear=most_shear,
+    bond=bond,
+    breaks=breaks,
+    contact_energy=contact_energy,
+    bond_energy=bond_energy,
+    contact_room=contact_room,
+    bond_room=bond_room,
+)
+
+
+LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
+"""Description of each limit of `limit_lines`."""
+
+BOND_LIMITS = 3
+"""Number of the first limit of bonds, whose strengths scatter."""
+
+
+def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
+    """Limits of pairs as lines a·e + b·s + c·θ ≤ d in their stretch e (m), shear s (m) and turn θ.
+
+    A closed contact opens at k_n(e − e_0) = 0, one with a gap closes there, e_0 being its overlap at the start, and a
+    closed one slides at |k_s s| = μk_n(e_0 − e); bonds break as above.
+
+    Parameters
+    ----------
+    constants : (p, 12 or more). limits : friction and strength, numbers or columns (p,).
+
+    Returns (a, b, c) (p, 7, 3) in the order of `LIMITS`, and d (p, 7), infinite where a pair has no such limit.
+    """
+    rest, touch, normal, shear = (constants[:, each] for each in (K.rest, K.touch, K.kn, K.ks))
+    bond, bond_shear, bending = (constants[:, each] for each in (K.bond_kn, K.bond_ks, K.bending))
+    per_area, per_section = constants[:, K.per_area], constants[:, K.per_section]
+    closed, zero = touch >= rest, np.zeros(len(constants))
+    overlap = touch - rest
+    acts, sticks = normal > 0.0, closed & (shear > 0.0)
+    sense = np.where(closed, 1.0, -1.0)
+    press = limits.friction * normal
+    pulled, turned, sheared = bond * per_area, bending * per_section, bond_shear * per_area
+    lines = [
+        (sense * normal, zero, zero, np.where(acts, sense * normal * overlap, np.inf)),
+        *((press, sign * shear, zero, np.where(sticks, press * overlap, np.inf)) for sign in (1.0, -1.0)),
+        *((pulled, zero, sign * turned, np.where(bond > 0.0, limits.tension, np.inf)) for sign in (1.0, -1.0)),
+        *(
+            (limits.tan_fa * pulled, sign * sheared, zero, np.where(bond > 0.0, limits.cohesion, np.inf))
+            for sign in (1.0, -1.0)
+        ),
+    ]
+    slopes = np.array([np.column_stack(line[:3]) for line in lines])
+    return np.ascontiguousarray(slopes.transpose(1, 0, 2)), np.column_stack([line[3] for line in lines])
+
+
+def limit_in_words(limit: int, constants: np.ndarray) -> str:
+    """Description of a limit of `limit_lines` for a pair with these constants."""
+    has_gap = constants[K.touch] < constants[K.rest]
+    return "closes" if limit == 0 and has_gap else LIMITS[limit]

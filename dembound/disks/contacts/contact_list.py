@@ -100,7 +100,7 @@ class ContactList(PairList):
         self.bonds, self.kind, self._begun_slip = stressed(ground, constants, assembly, at_rest)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[self.kind, :2]), self.kind)
-        bonded = bonds_of(self.bonds, self.kind)
+        bonded = bonds_of(self.ground.law, self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self.own_types = len(self.bonds)
         self._constants = self.bonds
@@ -221,7 +221,7 @@ class ContactList(PairList):
     def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
         """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
 
-        Their types are rows of constants (p, 15), in layered ground with limits (p, 19), which are returned too.
+        Their types are rows of constants, in layered ground with four limits, which are returned too.
         """
         positions, radii = self.assembly.positions, self.assembly.radii
         near, image = near_pairs(positions + moved, radii, self.skin, self.periods)
@@ -244,7 +244,7 @@ class ContactList(PairList):
             limits = np.repeat(NO_LIMITS, len(first), axis=0)
             limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
             constants = np.column_stack([constants, limits])
-        constants, row_of = shared_constants(constants, np.column_stack(zones), self.skin)
+        constants, row_of = shared_constants(constants, np.column_stack(zones), self.skin, self.ground.law.width)
         return Pairs(first, second, image, row_of), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:

@@ -9,6 +9,7 @@ from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.tables import Contacts
 from dembound.laws import Stiffness
+from dembound.laws.elastic import K
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,7 @@ class Dashpots:
     def at(self, contacts: Contacts) -> np.ndarray:
         """Viscosities (b, 2) N·s/m in all places of contacts, 0 where there is none."""
         one, other = self.mass[contacts.first], self.mass[contacts.second]
-        springs = contacts.constants[contacts.contact_type, 5:7]
+        springs = contacts.constants[contacts.contact_type][:, [K.kn, K.ks]]
         ratios = np.array([self.normal, self.shear])
         return np.ascontiguousarray(viscosity(ratios, springs, one[:, None], other[:, None]))
 
@@ -49,7 +50,8 @@ def brick_dashpots(ground: PackedMaterial, material: Material, pairing: tuple[in
     constants = ground.pair_constants(radii, brick.vectors, pairing, gaps_close=False)
     masses = own[0].mass[first], own[1].mass[second]
     normal, shear = (
-        viscosity(ratio, constants[:, k], *masses) for ratio, k in ((material.dp_nratio, 5), (material.dp_sratio, 6))
+        viscosity(ratio, constants[:, k], *masses)
+        for ratio, k in ((material.dp_nratio, K.kn), (material.dp_sratio, K.ks))
     )
-    arm = 0.5 * constants[:, 2] + constants[:, 4]
-    return Stiffness(normal, shear, np.zeros_like(normal), arm, constants[:, 2] - arm)
+    arm = 0.5 * constants[:, K.rest] + constants[:, K.offset]
+    return Stiffness(normal, shear, np.zeros_like(normal), arm, constants[:, K.rest] - arm)

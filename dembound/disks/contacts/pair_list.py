@@ -6,7 +6,9 @@ from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.contacts.pairs import ContactHistory, Pairs, in_places
 from dembound.disks.material.constants import BondFactors
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import near
+from dembound.kernels.columns import STRAIN
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.tables.contacts import Cells, Limits, PairRows
 from dembound.motion.state import Layout, aligned_zeros
@@ -85,12 +87,14 @@ class PairList:
         (3, slots) work space of the kernels.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
-    bonds : (p, 15) constants of the contacts of the brick; (p, 19) with the limits of each, see `ContactList.limits`.
+    ground : whose law says how many constants of it a pair has.
+    bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
     strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. With dashpots, viscosity
     (places, 2) and drag (places, 2), see `kernels.tables.Dashed`.
     """
 
+    ground: PackedMaterial
     limits: Limits
     own_types: int
     factors: BondFactors | None
@@ -164,7 +168,7 @@ class PairList:
 
     def _list(self, pairs: Pairs, history: ContactHistory) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
-        constants, columns = np.ascontiguousarray(self._constants[:, :15]), self._constants[:, 15:]
+        constants, columns = np.split(self._constants, [self.ground.law.width + STRAIN], axis=1)
         if columns.size > 0:
             columns = np.vstack([columns, NO_LIMITS])  # of places without a pair
             self.limits = in_columns(columns, self.limits.geometry)
@@ -177,7 +181,7 @@ class PairList:
             self.drag = placed.drag if len(placed.drag) > 0 else np.zeros_like(self.viscosity)
         if self._plan is not None:
             assert placed.strays is not None
-            self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
+            self.rows, self.strays = self._plan.rows(placed.in_rows, constants), placed.strays
             self.extra = aligned_zeros(3, self.layout.count)
 
     def _factors(self, factors: BondFactors) -> np.ndarray:

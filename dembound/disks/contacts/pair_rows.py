@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
+from dembound.kernels.columns import P, of_law
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.tables import PairRows
@@ -108,12 +109,12 @@ class PairPlan:
         return place
 
     def rows(self, place: np.ndarray, constants: np.ndarray) -> PairRows:
-        """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 15) of contacts."""
+        """The rows for kernels; place (b,) of the pairs that are in them, constants (types, c + 3) of contacts."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
-        lines = constants[self.key % self.types, :15]
-        placed = np.column_stack([lines[:, :12], lines[:, :2] / lines[:, 2:3]])
-        return self._empty._replace(exists=exists, constants=placed, began=began_of(lines))
+        lines = constants[self.key % self.types]
+        way = lines[:, :2] / lines[:, P.rest, None]
+        return self._empty._replace(exists=exists, constants=of_law(lines), way=way, began=began_of(lines))
 
     @cached_property
     def _empty(self) -> PairRows:
@@ -137,7 +138,8 @@ class PairPlan:
             disk_block=self.first_block + plan.group_block[:-1],
             disk_rows=np.diff(plan.group_row),
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
-            constants=np.zeros((0, 14)),
+            constants=np.zeros((0, 0)),
+            way=np.zeros((0, 2)),
             began=0.0,
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),

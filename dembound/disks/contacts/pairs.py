@@ -10,11 +10,13 @@ from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.columns import P, of_law
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
 from dembound.kernels.tables.contacts import Contacts, Limits
+from dembound.laws import Law
 from dembound.motion.kind import Finding
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.motion.trackers import Run
@@ -53,7 +55,7 @@ def acting(contacts: Contacts, geometry: int) -> np.ndarray:
     with a force in the last step are closed.
     """
     if geometry >= REFERENCE:
-        rest, touch = contacts.constants[:, 2:4].T
+        rest, touch = contacts.constants[:, P.rest], contacts.constants[:, P.touch]
         closed = (touch >= rest)[contacts.contact_type]
     else:
         closed = contacts.force[:2].any(axis=0)
@@ -84,7 +86,7 @@ def pieces(layout: Layout, contacts: Contacts, displacement: np.ndarray, geometr
         else:
             moved = displacement[:2, second] - displacement[:2, first]
             vector = vector + (np.where(bonded, 0.0, moved) if geometry == BONDED else moved)
-        near = 0.5 + rows[:, 4] / np.hypot(*vector)
+        near = 0.5 + rows[:, P.offset] / np.hypot(*vector)
         yield Piece(first, second, bonded, acting(part, geometry), vector, near, part.force[:2])
 
 
@@ -161,8 +163,8 @@ def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
     }
 
 
-NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
-"""Constants of a place without a pair: far apart, without stiffness."""
+NOTHING = np.array([1e6, 0.0, 1e6, -1e100, 0.0])
+"""Where a place without a pair is: far apart. The other constants there are 0."""
 
 
 @dataclass(frozen=True)
@@ -225,6 +227,9 @@ def in_places(
     places = 0 if plan is None else plan.count
     shared = int(np.count_nonzero(in_rows >= 0))
     live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
+    if plan is not None:  # the last type is that of places without a pair
+        nothing = np.pad(NOTHING, (0, constants.shape[1] - len(NOTHING)))
+        constants = np.vstack([constants, nothing])
     count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
     if plan is not None:
         count = -(-count // LANES) * LANES  # each row of forces is aligned
@@ -244,9 +249,9 @@ def in_places(
         begin=begin,
         first=placed(first.astype(np.uint32), int(slot[0])),
         second=placed(second.astype(np.uint32), int(slot[0])),
-        contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(constants)),
-        constants=np.vstack([constants[:, :12], NOTHING]) if plan is not None else constants[:, :12].copy(),
-        began=began_of(constants if plan is None else np.vstack([constants, np.zeros(15)])),
+        contact_type=placed(pairs.contact_type[order].astype(np.uint32), max(0, len(constants) - 1)),
+        constants=of_law(constants),
+        began=began_of(constants),
         state=placed(history.state[order], NONE),
         shear=placed(history.shear[order]),
         slip=placed(history.slip[order]),
@@ -287,9 +292,9 @@ def plain_contacts(
         first=first,
         second=second,
         contact_type=kind.astype(np.uint32),
-        constants=np.ascontiguousarray(constants[:, :12]),
+        constants=of_law(constants),
         began=began_of(constants),
-        state=bonds_of(constants, kind),
+        state=bonds_of(ground.law, constants, kind),
         shear=nothing,
         slip=nothing,
         closed=np.zeros(0, dtype=np.uint8),
@@ -302,6 +307,6 @@ def plain_contacts(
     )
 
 
-def bonds_of(constants: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
-    """States (b,) of contacts as built: intact where the rows of their types in constants (p, 15) have a bond."""
-    return np.where(constants[contact_type, 7] > 0.0, INTACT, NONE).astype(np.uint8)
+def bonds_of(law: Law, constants: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
+    """States (b,) of contacts as built: intact where the rows of their types in constants have a bond."""
+    return np.where(law.column(constants, "bond_kn")[contact_type] > 0.0, INTACT, NONE).astype(np.uint8)

@@ -18,7 +18,8 @@ from dembound.casefile.disks.load import gravity
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.sliding import springs_of, strains_of, strains_with_slip, within_friction
+from dembound.disks.material.sliding import strains_of, strains_with_slip, within_friction
+from dembound.kernels.columns import STRAIN
 from dembound.packings.tiling import Assembly
 from dembound.places import ROUNDING
 
@@ -104,7 +105,8 @@ def _with_sliding(ground: PackedMaterial, at_rest: StressAtRest) -> StressAtRest
     )
     under = [(material, stress) for material, layer in zones for stress in at_rest.ends(layer)[1]]
     if all(
-        within_friction(each.contact_constants, each.moduli.fric, pair_forces(each) @ stress) for each, stress in under
+        within_friction(*each.law.stiffnesses(each.contact_constants), each.moduli.fric, pair_forces(each) @ stress)
+        for each, stress in under
     ):
         return at_rest
     is_borne = all(each.sliding_forces(stress) is not None for each, stress in under)
@@ -149,7 +151,7 @@ def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
     found = ground.sliding_forces(stress)
     if found is not None:
         return found
-    contacts, bonds = springs_of(ground.contact_constants)
+    contacts, bonds = ground.law.stiffnesses(ground.contact_constants)
     forces = pair_forces(ground) @ stress
     return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
 
@@ -159,13 +161,14 @@ def stressed(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Constants of contacts that begin under a stress at rest, the row of each contact (b,), and the slip of each row.
 
-    constants : (2b, 15) of the brick's contacts, of each pairing of zones in a layered ground. Where the stress depends
-    on height, each row of bricks has its own. Slip in m.
+    constants : (2b, c + 3 or more) of the brick's contacts, of each pairing of zones in a layered ground. Where the
+    stress depends on height, each row of bricks has its own. Slip in m.
     """
     if at_rest is None:
         return constants, assembly.contact_type, np.zeros(len(constants))
     brick = ground.brick
     middle = brick.positions[brick.pairs[:, 0], 1] + 0.5 * brick.vectors[:, 1]
+    began = slice(ground.law.width, ground.law.width + STRAIN)
     kind, types = assembly.contact_type.astype(np.int64), 2 * len(middle)
     _, first, row = np.unique(assembly.tile[:, 1], return_index=True, return_inverse=True)
     base = assembly.positions[first, 1] - brick.positions[assembly.brick_particle[first], 1]
@@ -179,7 +182,7 @@ def stressed(
     ):
         own[:] = constants[pairing * types : (pairing + 1) * types]
         heights, between = base[number] + middle, ground.pairings[pairing]
-        contacts, bonds = springs_of(own[: len(middle)])
+        contacts, bonds = ground.law.stiffnesses(own[: len(middle)])
         if at_rest.slides:
             every = np.arange(len(middle))
             forces = np.mean([rest_forces(zones[zone], at_rest, every, heights) for zone in between], axis=0)
@@ -187,5 +190,5 @@ def stressed(
         else:
             forces = np.einsum("kbs,sb->bk", np.mean([linear[zone] for zone in between], axis=0), at_rest.at(heights))
             strains = strains_of(forces.T, contacts + bonds)
-        own[:, 12:15] = np.concatenate([strains.T, strains.T])
+        own[:, began] = np.concatenate([strains.T, strains.T])
     return found.reshape(-1, constants.shape[1]), kind % types + types * variant.reshape(-1), slips.reshape(-1)

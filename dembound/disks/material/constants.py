@@ -11,6 +11,7 @@ from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.kernels.columns import PLACE
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables.contacts import Limits
@@ -102,7 +103,7 @@ def _weaker(one: Limits, other: Limits) -> Limits:
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Constants (2b, 15) of the brick's contacts, followed by the same with half their stiffness, for half cells.
+    """Constants (2b, c + 3) of the brick's contacts, followed by the same with half their stiffness, for half cells.
 
     For each pairing of zones in a layered ground. Arguments as for `pair_constants`.
     """
@@ -114,19 +115,20 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
             (first, second), brick.vectors, pairing, gaps_close=gaps_close, locked_in=locked_in
         )
         half = constants.copy()
-        half[:, 5:10] *= 0.5  # stiffnesses
-        half[:, 10:12] *= 2.0  # and areas and section moduli too, so that stresses do not change
+        half[:, : ground.law.width] *= [each.in_half for each in ground.law.columns]
         found += [constants, half]
     return np.vstack(found)
 
 
-def shared_constants(constants: np.ndarray, zones: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows (p, 15 or 19) of the constants of pairs, to rounding, and the row of each pair (b,).
+def shared_constants(
+    constants: np.ndarray, zones: np.ndarray, length: float, width: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct rows (p, …) of the constants of pairs, to rounding, and the row of each pair (b,).
 
     Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2) and have the same
-    limits; length (m) is the scale for rounding errors.
+    limits; length (m) is the scale for rounding errors, width the number of constants of the law.
     """
-    places = np.column_stack([np.round(constants[:, :5] / (1e-6 * length)), zones, constants[:, 12:]])
+    places = np.column_stack([np.round(constants[:, : len(PLACE)] / (1e-6 * length)), zones, constants[:, width:]])
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return constants[first], row_of.reshape(-1)
 

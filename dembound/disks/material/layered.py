@@ -17,6 +17,7 @@ import numpy as np
 
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
+from dembound.kernels.columns import STRAIN
 from dembound.laws import Moduli, Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
@@ -124,8 +125,9 @@ class LayeredGround(PackedMaterial):
             return one
         radii = self.brick.radii[self.brick.pairs].T
         constants = self.pair_constants((radii[0], radii[1]), self.brick.vectors, pairing, gaps_close=False)
-        normal, shear = (constants[:, 5:7] + constants[:, 7:9]).T
-        return Stiffness(normal, shear, constants[:, 9], one.arm_i, one.arm_j)
+        contacts, bonds = self.law.stiffnesses(constants)
+        normal, shear, bending = contacts + bonds
+        return Stiffness(normal, shear, bending, one.arm_i, one.arm_j)
 
     def pair_constants(
         self,
@@ -137,8 +139,8 @@ class LayeredGround(PackedMaterial):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 15) of pairs, see `PackedMaterial.pair_constants`."""
-        found = np.empty((len(vectors), 15))
+        """Constants (b, c + 3) of pairs, see `PackedMaterial.pair_constants`."""
+        found, stiff = np.empty((len(vectors), self.law.width + STRAIN)), self.law.stiff
         ends = np.stack([np.broadcast_to(zone, len(vectors)) for zone in zones], axis=1)
         for pair in np.unique(ends, axis=0):
             chosen = (ends == pair).all(axis=1)
@@ -154,7 +156,7 @@ class LayeredGround(PackedMaterial):
             )
             found[chosen] = one
             if pair[0] != pair[1]:
-                found[chosen, 5:10] = _in_series(one[:, 5:10], other[:, 5:10])
+                found[np.ix_(chosen, stiff)] = _in_series(one[:, stiff], other[:, stiff])
         return found
 
     @cached_property

@@ -78,7 +78,7 @@ class PackedMaterial:
 
     @cached_property
     def contact_constants(self) -> np.ndarray:
-        """Constants (b, 15) of the brick's contacts as built, see `pair_constants`."""
+        """Constants (b, c + 3) of the brick's contacts as built, see `pair_constants`."""
         first, second = self.brick.radii[self.brick.pairs].T
         return self.pair_constants((first, second), self.brick.vectors, gaps_close=False)
 
@@ -170,7 +170,7 @@ class PackedMaterial:
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 15) of pairs, see `Law.pair_constants`.
+        """Constants (b, c + 3) of pairs, see `Law.pair_constants`.
 
         radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs
         have bonds; None: if the material has them.
@@ -250,7 +250,9 @@ class PackedMaterial:
         if way not in self._resting:
             brick, held = self.brick, tuple(component for component in self.held if component == 2)
             network, area = Network.of_brick(brick, self.stiffness), float(np.prod(brick.size))
-            found = sliding_forces(network, self.contact_constants, self.moduli.fric, np.array(way), held, area)
+            found = sliding_forces(
+                network, *self.law.stiffnesses(self.contact_constants), self.moduli.fric, np.array(way), held, area
+            )
             self._resting[way] = found
         kept = self._resting[way]
         return None if kept is None else largest * kept

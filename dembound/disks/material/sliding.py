@@ -26,16 +26,11 @@ WITHIN = 1e-9
 """Part of a force or strain that is rounding where contacts are at their friction."""
 
 
-def springs_of(constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffnesses (3, b) of contacts and of bonds against stretch, shear and rotation; constants (b, 12 or more)."""
-    closed = constants[:, 3] >= constants[:, 2]
-    contacts = np.where(closed, [constants[:, 5], constants[:, 6], np.zeros(len(constants))], 0.0)
-    return contacts, constants[:, 7:10].T
+def within_friction(contacts: np.ndarray, bonds: np.ndarray, friction: float, forces: np.ndarray) -> bool:
+    """Whether contacts neither slide nor open under elastic forces (3, b) of contacts and bonds together.
 
-
-def within_friction(constants: np.ndarray, friction: float, forces: np.ndarray) -> bool:
-    """Whether contacts neither slide nor open under elastic forces (3, b) of contacts and bonds together."""
-    contacts, bonds = springs_of(constants)
+    contacts, bonds : (3, b) stiffnesses, see `Law.stiffnesses`.
+    """
     stretch, sheared, _ = strains_of(forces, contacts + bonds)
     push, shear, least = -contacts[0] * stretch, contacts[1] * sheared, WITHIN * np.abs(forces[:2]).max(initial=0.0)
     return bool((push >= -least).all() and (np.abs(shear) <= friction * push + least).all())
@@ -54,21 +49,26 @@ def strains_with_slip(forces: np.ndarray, contacts: np.ndarray, bonds: np.ndarra
 
 
 def sliding_forces(
-    network: Network, constants: np.ndarray, friction: float, stress: np.ndarray, held: tuple[int, ...], area: float
+    network: Network,
+    contacts: np.ndarray,
+    bonds: np.ndarray,
+    friction: float,
+    stress: np.ndarray,
+    held: tuple[int, ...],
+    area: float,
 ) -> np.ndarray | None:
     """Normal, shear and bending forces of contacts and bonds together, and shear forces of contacts, (4, b).
 
-    constants : (b, 15) of the network's contacts. stress : (3,) xx, yy, xy in Pa, tension positive. held : components
-    that do not move. area : m², of the network's period. None if no balance is found, as where friction alone cannot
-    bear the stress.
+    contacts, bonds : (3, b) stiffnesses, see `Law.stiffnesses`. stress : (3,) xx, yy, xy in Pa, tension positive. held
+    : components that do not move. area : m², of the network's period. None if no balance is found, as where friction
+    alone cannot bear the stress.
     """
     from scipy.sparse import coo_matrix, csc_matrix, diags, hstack
     from scipy.sparse.linalg import splu
 
     if not stress.any():
-        return np.zeros((4, len(constants)))
-    contacts, bonds = springs_of(constants)
-    normal, number = contacts[0], np.arange(len(constants))
+        return np.zeros((4, contacts.shape[1]))
+    normal, number = contacts[0], np.arange(contacts.shape[1])
     gradients = network.gradient_matrix() @ [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5], [0.0, 0.0, 0.5]]
     ways = hstack([csc_matrix(gradients), network.motion_matrix()[:, free_columns(network.disks, held)]]).tocsc()
     applied = np.zeros(ways.shape[1])

@@ -14,6 +14,7 @@ from dembound.disks.stepping.balance import Balance
 from dembound.disks.stepping.carriers import RestForces
 from dembound.disks.stepping.scene_parts import DiskParts, Start
 from dembound.kernels import contacts as kernel
+from dembound.kernels.columns import P
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import INTACT, SHEAR, TENSION, UPDATED
 
@@ -63,7 +64,7 @@ def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | s
     small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
     kernel.start_from_displacements(u, small, True)
     along_path = (pairs.limits.geometry == UPDATED) | (now.state != INTACT)
-    touch, rest = now.constants[now.contact_type][:, [3, 2]].T
+    touch, rest = now.constants[now.contact_type][:, [P.touch, P.rest]].T
     small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
     if slack(u, small, pairs.limits, True) > 0.0:
         return small.slip

@@ -15,56 +15,20 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.columns import STRAIN, of_law
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.load_factor import least_factors
-from dembound.kernels.tables import Limits
+from dembound.laws.linearpbond import BOND_LIMITS, limit_in_words, limit_lines
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
 from dembound.places import is_within
 from dembound.table import EVERYWHERE, Box
 
-LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
-"""Description of each limit of `limit_lines`."""
-
 LOAD_FACTOR = "load factor"
 """Name of the finding."""
-
-
-def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
-    """Limits of pairs as lines a·e + b·s + c·θ ≤ d in their stretch e (m), shear s (m) and turn θ.
-
-    A closed contact opens at k_n(e − e_0) = 0, one with a gap closes there, e_0 being its overlap at the start, and a
-    closed one slides at |k_s s| = μk_n(e_0 − e); bonds break at σ + |M|R̄/J = pb_ten with σ = k̄_n e, and at
-    |k̄_s s| + σ tan pb_fa = pb_coh.
-
-    Parameters
-    ----------
-    constants : (p, 15 or more), see kernels/contacts.py. limits : friction and strength, numbers or columns (p,).
-
-    Returns (a, b, c) (p, 7, 3) in the order of `LIMITS`, and d (p, 7), infinite where a pair has no such limit.
-    """
-    rest, touch, normal, shear = constants[:, 2], constants[:, 3], constants[:, 5], constants[:, 6]
-    bond, bond_shear, bending, per_area, per_section = constants[:, 7:12].T
-    closed, zero = touch >= rest, np.zeros(len(constants))
-    overlap = touch - rest
-    acts, sticks = normal > 0.0, closed & (shear > 0.0)
-    sense = np.where(closed, 1.0, -1.0)
-    press = limits.friction * normal
-    pulled, turned, sheared = bond * per_area, bending * per_section, bond_shear * per_area
-    lines = [
-        (sense * normal, zero, zero, np.where(acts, sense * normal * overlap, np.inf)),
-        *((press, sign * shear, zero, np.where(sticks, press * overlap, np.inf)) for sign in (1.0, -1.0)),
-        *((pulled, zero, sign * turned, np.where(bond > 0.0, limits.tension, np.inf)) for sign in (1.0, -1.0)),
-        *(
-            (limits.tan_fa * pulled, sign * sheared, zero, np.where(bond > 0.0, limits.cohesion, np.inf))
-            for sign in (1.0, -1.0)
-        ),
-    ]
-    slopes = np.array([np.column_stack(line[:3]) for line in lines])
-    return np.ascontiguousarray(slopes.transpose(1, 0, 2)), np.column_stack([line[3] for line in lines])
 
 
 class LoadFactor(Every):
@@ -91,18 +55,19 @@ class LoadFactor(Every):
         self._pairs = []
         for part in system.disks.parts:
             constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest)
+            constants, columns = np.split(constants, [scene.ground.law.width + STRAIN], axis=1)
             pairs = part.pairs._replace(
-                constants=np.ascontiguousarray(constants[:, :12]),
+                constants=of_law(constants),
                 began=began_of(constants),
                 contact_type=kind.astype(np.uint32),
             )
-            own = in_columns(constants[:, 15:], limits.geometry) if scene.ground.is_layered else limits
+            own = in_columns(columns, limits.geometry) if scene.ground.is_layered else limits
             bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name == "column")
             strength = 1.0 if bonds is None else bonds.at(part.assembly.pairs[:, 0], part.assembly.contact_type)
             if scene.intact is not None:  # bonds that do not break have no limit
                 kept = scene.intact[part.nodes][part.assembly.pairs].any(axis=1)
                 strength = np.where(kept, np.inf, strength)
-            self._pairs.append((pairs, (*limit_lines(pairs.constants, own), strength)))
+            self._pairs.append((pairs, (*limit_lines(pairs.constants, own), BOND_LIMITS, strength)))
         self._least, self._where = np.empty(CHUNKS), np.empty((CHUNKS, 2), dtype=np.int64)
         self._rest = np.zeros((3, 0))
         self.factor = np.inf
@@ -160,12 +125,6 @@ def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]
     if found is None or not is_within(inside or EVERYWHERE, found["position"], float(run.scene.size.max())):
         return {}
     return {LOAD_FACTOR: Finding(found["factor"], "1")}
-
-
-def limit_in_words(limit: int, constants: np.ndarray) -> str:
-    """Description of a limit of `limit_lines` for a pair with these constants (15,)."""
-    has_gap = constants[3] < constants[2]
-    return "closes" if limit == 0 and has_gap else LIMITS[limit]
 
 
 def load_factor_in_words(found: Mapping[str, Any]) -> str:

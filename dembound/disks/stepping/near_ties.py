@@ -17,6 +17,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT
 from dembound.kernels.tables import Contacts
+from dembound.laws.elastic import K
 from dembound.motion.state import Arrays, State
 
 TIE_DISTANCE = 2.0
@@ -87,7 +88,7 @@ class NearTies:
     def __init__(self, scene: DiskBody, contacts: ContactList) -> None:
         assembly, constants = contacts.assembly, contacts.bonds[contacts.kind]
         near = sides_near(scene)[contacts.nodes][assembly.pairs].max(axis=1)
-        closed = (constants[:, 3] >= constants[:, 2]) & (constants[:, 5] > 0.0)
+        closed = (constants[:, K.touch] >= constants[:, K.rest]) & (constants[:, K.kn] > 0.0)
         watched = np.flatnonzero(closed & (near >= 0))
         self._side = near[watched]
         self._pairs, self._vectors = assembly.pairs[watched].astype(np.int64), constants[watched, :2]
@@ -118,7 +119,8 @@ class NearTies:
         """Force (w,) N per metre by which each watched contact differs from one that neither opens nor slides."""
         arrays = contacts.arrays
         at, listed = self._places(contacts)
-        x, y, rest, touch, _, normal, shear = arrays.constants[arrays.contact_type[at], :7].T
+        rows = arrays.constants[arrays.contact_type[at]]
+        x, y, rest, touch, normal, shear = (rows[:, each] for each in (K.x, K.y, K.rest, K.touch, K.kn, K.ks))
         dx, dy = u[:2, arrays.second[at]] - u[:2, arrays.first[at]]
         stretch = ((2.0 * x + dx) * dx + (2.0 * y + dy) * dy) / (np.hypot(x + dx, y + dy) + rest)
         if contacts.limits.geometry == BONDED:

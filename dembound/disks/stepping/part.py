@@ -100,8 +100,7 @@ class DiskPart(Part):
         )
         if contacts.dashpots is None or not self.dashes:
             return law
-        geometry = contacts.limits.geometry
-        return Dashed(law, contacts.arrays, geometry, contacts.viscosity, contacts.drag, self._taken)
+        return Dashed(law, contacts.arrays, contacts.limits, contacts.viscosity, contacts.drag, self._taken)
 
     def _bonded(self, contacts: ContactList, law: Bonded) -> Bonded | LaneBonded:
         """The history-dependent law, in rows of copies if the pairs are."""
@@ -131,7 +130,7 @@ class DiskPart(Part):
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
-        return strain_energy(u, self.pairs, self.geometry)
+        return strain_energy(u, self.pairs, self.ground.law.without_limits(self.geometry))
 
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since the last call; none under a law without a history."""

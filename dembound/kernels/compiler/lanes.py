@@ -97,6 +97,11 @@ def at_most(values: np.ndarray, limits: np.ndarray) -> np.ndarray:
     return values <= limits
 
 
+def larger(values: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The larger of two numbers in each lane."""
+    return np.where(values <= others, others, values)
+
+
 def magnitude(values: np.ndarray) -> np.ndarray:
     """Absolute values."""
     return np.abs(values)
@@ -144,20 +149,29 @@ def _widened(builder: Any, number: Any) -> Any:
     return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), everywhere)
 
 
-def _compiled(function: Any, result: Any, *arguments: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def _compiled(
+    function: Any, result: Any, *arguments: Any, number: Callable[..., Any] | None = None
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Replace a function in compiled kernels by code that a function of (builder, values…) generates.
 
     arguments : the numba types it takes; where one of them is `lanes` a number will do. Of arrays the code gets the
-    address of the first double.
+    address of the first double. number : the code for single numbers and truth values in place of lanes and masks, in
+    functions that formulas of one pair call, too; None: numba has it, or it is not called for them.
     """
 
     class Typing(AbstractTemplate):
         def generic(self, args: Any, kws: Any) -> Any:
-            alike = len(args) == len(arguments) and all(map(_fits, args, arguments))
+            if len(args) != len(arguments):
+                return None
+            if number is not None and _is_single(args, arguments):
+                return signature(_SINGLE.get(result, result), *(_SINGLE.get(each, each) for each in arguments))
+            alike = all(map(_fits, args, arguments))
             return signature(result, *args) if alike and not _are_numbers(args) else None
 
     def register(generate: Callable[..., Any]) -> Callable[..., Any]:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+            if number is not None and _is_single(sig.args, arguments):
+                return number(builder, *args)
             values = []
             for given, wanted, value in zip(sig.args, arguments, args, strict=True):
                 if isinstance(given, types.Array):
@@ -172,6 +186,20 @@ def _compiled(function: Any, result: Any, *arguments: Any) -> Callable[[Callable
         return generate
 
     return register
+
+
+_SINGLE = {lanes: types.float64, mask: types.boolean}
+"""The types of one pair that take the place of lanes and masks."""
+
+
+def _is_single(given: Any, wanted: Any) -> bool:
+    """Whether types are single numbers and truth values wherever lanes and masks are wanted, and otherwise fit."""
+    return all(
+        isinstance(one, types.Number)
+        if other == lanes
+        else (one == types.boolean if other == mask else _fits(one, other))
+        for one, other in zip(given, wanted, strict=True)
+    )
 
 
 def _fits(given: Any, wanted: Any) -> bool:
@@ -196,13 +224,18 @@ def _instruction(function: Any, name: str) -> None:
 
 
 def _intrinsic(function: Any, name: str, count: int) -> None:
-    """Replace a function by an LLVM intrinsic for lanes."""
-    kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * count)
+    """Replace a function by an LLVM intrinsic, for lanes and for numbers."""
 
-    def call(builder: Any, *values: Any) -> Any:
-        return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), values)
+    def caller(kind: Any, of: str) -> Callable[..., Any]:
+        signed = ir.FunctionType(kind, [kind] * count)
 
-    _compiled(function, lanes, *[lanes] * count)(call)
+        def call(builder: Any, *values: Any) -> Any:
+            return builder.call(cgutils.get_or_insert_function(builder.module, signed, f"llvm.{name}.{of}"), values)
+
+        return call
+
+    number = caller(ir.DoubleType(), "f64")
+    _compiled(function, lanes, *[lanes] * count, number=number)(caller(_DOUBLES, f"v{LANES}f64"))
 
 
 _numbers = types.UniTuple(types.float64, 1)  # of any length
@@ -262,14 +295,23 @@ def _note_bits(builder: Any, first: Any, i: Any, chosen: Any) -> None:
     builder.store(builder.zext(chosen, kind), builder.bitcast(builder.gep(first, [i]), kind.as_pointer()), align=1)
 
 
-@_compiled(choose, lanes, mask, lanes, lanes)
+@_compiled(choose, lanes, mask, lanes, lanes, number=lambda builder, *values: builder.select(*values))
 def _choose(builder: Any, chosen: Any, values: Any, others: Any) -> Any:
     return builder.select(chosen, values, others)
 
 
-@_compiled(at_most, mask, lanes, lanes)
+@_compiled(at_most, mask, lanes, lanes, number=lambda builder, a, b: builder.fcmp_ordered("<=", a, b))
 def _at_most(builder: Any, values: Any, limits: Any) -> Any:
     return builder.fcmp_ordered("<=", values, limits)
+
+
+def _larger_one(builder: Any, value: Any, other: Any) -> Any:
+    return builder.select(builder.fcmp_ordered("<=", value, other), other, value)
+
+
+@_compiled(larger, lanes, lanes, lanes, number=_larger_one)
+def _larger(builder: Any, values: Any, others: Any) -> Any:
+    return _larger_one(builder, values, others)
 
 
 @_compiled(lane, types.float64, lanes, types.uint64)

@@ -8,10 +8,12 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
+from dembound.kernels.columns import STRAIN
+
 
 def began_of(constants: np.ndarray) -> float | np.ndarray:
-    """`Contacts.began` of types of contacts whose constants (p, 15 or more) have their strain from the start last."""
-    began = constants[:, 12:15]
+    """`Contacts.began` of types of contacts whose constants (p, c + 3) have their strain from the start last."""
+    began = constants[:, -STRAIN:]
     return np.ascontiguousarray(began) if began.any() else 0.0
 
 

@@ -54,9 +54,9 @@ class LaneRows(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts with a history, each listed once; see kernels/contacts.py for the columns of constants and force.
+    """Contacts with a history, each listed once; see kernels/contacts.py for forces, kernels/columns.py for constants.
 
-    first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
+    first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, c).
     began : (p, 3) stretch and shear (m) and rotation that pairs have from the start; 0.0 without a stress at rest.
     state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
     kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, 1 if the
@@ -109,8 +109,8 @@ class PairRows(NamedTuple):
     group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
     a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
     disks. step : (q, 2) row of the first disk within its group, and slots from the first disk to the second; constants
-    : (q, 14) those of Contacts, and the direction from the first disk to the second at the start; exists : (blocks,)
-    uint8, the bits of the lanes that hold a pair.
+    : (q, c) those of Contacts; way : (q, 2) direction from the first disk to the second at the start; exists :
+    (blocks,) uint8, the bits of the lanes that hold a pair.
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
     (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1. contact_type : (q,)
@@ -123,6 +123,7 @@ class PairRows(NamedTuple):
     disk_rows: np.ndarray
     step: np.ndarray
     constants: np.ndarray
+    way: np.ndarray
     began: float | np.ndarray
     exists: np.ndarray
     start: np.ndarray

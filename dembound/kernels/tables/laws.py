@@ -78,13 +78,13 @@ class LaneBonded(NamedTuple):
 class Dashed(NamedTuple):
     """The history-dependent law with dashpots at closed contacts, see kernels/dashpots.py.
 
-    contacts, geometry : of the law. viscosity : (b, 2) N·s/m of normal and shear dashpots, by places of the contacts;
+    contacts, limits : of the law. viscosity : (b, 2) N·s/m of normal and shear dashpots, by places of the contacts;
     drag : (b, 2) N, their last forces, pushing and along the shear. taken (chunks,) : work space.
     """
 
     law: Bonded | LaneBonded
     contacts: Contacts
-    geometry: int
+    limits: Limits
     viscosity: np.ndarray
     drag: np.ndarray
     taken: np.ndarray

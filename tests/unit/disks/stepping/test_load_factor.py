@@ -7,11 +7,11 @@ import pytest
 from small_cases import PUSHED, SPALLING, small
 
 from dembound.accuracy.runner import measure
-from dembound.disks.stepping.load_factor import LIMITS, LOAD_FACTOR, limit_in_words, limit_lines, load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.tables import Limits
 from dembound.kinds.disks.kind import Disks
+from dembound.laws.linearpbond import LIMITS, limit_in_words, limit_lines
 from dembound.running import Progress, plan, resume_case, run_case
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)

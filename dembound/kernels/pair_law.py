@@ -1,0 +1,88 @@
+"""The functions by which the loops over pairs call their law, which the type of its limits chooses.
+
+A law is one file in laws/: its constants (`COLUMNS`), its limits and the functions below, each registered with
+`is_pair_law`. They are written once, for numbers of one pair and for lanes of eight, with the functions of
+compiler/lanes.py in place of conditions; k is the pair's row of constants, kind its row of limits where these differ
+by type. The loops know the rest: geometry, contacts that open, the test against a limit, bonds that break.
+"""
+
+from typing import Any
+
+from numba import njit
+
+from dembound.kernels.common import FAST
+from dembound.kernels.law import Kernel, answer, generic
+
+INLINED: dict[str, Any] = FAST | {"inline": "always"}
+"""Options of small functions, which become part of the loops that call them."""
+
+
+@generic
+def acts(limits, constants, k):
+    """Whether a pair has a contact beside its bond."""
+
+
+@generic
+def normal(limits, constants, k, overlap):
+    """Force (N) with which a contact of this overlap (m) pushes; below 0 for a gap."""
+
+
+@generic
+def stored_between(limits, constants, k, before, now):
+    """Energy (J) that a contact stores by its overlap `now`, less that by the overlap `before`; both at least 0."""
+
+
+@generic
+def shear_of(limits, constants, k, shear, slip):
+    """Shear force (N) of a contact that does not slide, whose surfaces moved by `shear` (m) and slid by `slip` (m)."""
+
+
+@generic
+def slip_at(limits, constants, k, shear, force):
+    """Slip (m) of a contact that bears a shear force (N) after a motion of its surfaces of `shear` (m)."""
+
+
+@generic
+def most_shear(limits, kind, push):
+    """Largest shear force (N) of a contact that pushes with a force (N)."""
+
+
+@generic
+def bond(limits, constants, k, stretch, shear, turn):
+    """Normal and shear force (N) and moment (N·m) of an intact bond."""
+
+
+@generic
+def breaks(limits, constants, k, kind, factor, pull, side, moment):
+    """Whether a bond breaks in tension, and whether in shear, under its forces; factor : of its strengths."""
+
+
+@generic
+def contact_energy(limits, constants, k, overlap, slid):
+    """Energy (J) stored in a contact: overlap (m), motion of its surfaces less what has slid (m)."""
+
+
+@generic
+def bond_energy(limits, constants, k, stretch, shear, turn):
+    """Energy (J) stored in an intact bond."""
+
+
+@generic
+def contact_room(limits, constants, k, kind, overlap, stuck):
+    """Least relative motion (m) of two surfaces after which a closed contact may open or slide."""
+
+
+@generic
+def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
+    """Least relative motion (m) of two surfaces after which an intact bond may break."""
+
+
+def is_pair_law(limits: type, **kernels: Kernel) -> None:
+    """Register the functions of a law, each explained at the one of its name in this module, for limits of a type."""
+    for name, kernel in kernels.items():
+        answer(globals()[name], limits, kernel)
+
+
+def part_of_law(function: Any) -> Kernel:
+    """Compile a function of a law, as a part of the loops that call it."""
+    return njit(**INLINED)(function)
