@@ -7,6 +7,7 @@ import pytest
 from small_cases import PUSHED, SPALLING, small
 
 from dembound.accuracy.runner import measure
+from dembound.disks.stepping.load_factor import LOAD_FACTOR, load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.tables import Limits
