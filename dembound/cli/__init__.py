@@ -23,7 +23,8 @@ from dembound.cli import (
     sweep,
     wave,
 )
-from dembound.cli.app import app, main
+from dembound.cli.app import app
+from dembound.cli.entry import main
 
 __all__ = [
     "advise",

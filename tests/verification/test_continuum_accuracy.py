@@ -11,7 +11,7 @@ import pytest
 from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.disks.continuum import lattice_errors
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation

@@ -12,7 +12,7 @@ import pytest
 from dembound.disks.material.packing_waves import couplings, sent_back
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
 

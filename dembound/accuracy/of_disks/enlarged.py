@@ -21,7 +21,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.supports import forces_of
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.errors import CaseError
 from dembound.formulas.disks.reflections import Reflections
 from dembound.holes.hole import Hole

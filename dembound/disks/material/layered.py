@@ -1,9 +1,8 @@
 """Ground of horizontal layers: one packing whose masses and springs change with height.
 
 A contact between two layers has their springs in series, k = 2k₁k₂/(k₁ + k₂). For long waves the mass then changes at
-one height and the stiffness at others, for P and for S waves, up to half a diameter from the joint of the layers. A
-strip of bricks across the joint gives these heights, and the disks within five diameters of the joint get masses and
-springs that move all three to the joint.
+one height and the stiffness at others, for P and for S waves, up to half a diameter from the joint. A strip of bricks
+across the joint gives these heights; disks within five diameters get masses and springs that move all three to it.
 """
 
 from __future__ import annotations

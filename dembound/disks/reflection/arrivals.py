@@ -19,7 +19,7 @@ from dembound.disks.reflection.bricks import is_outwards
 from dembound.disks.reflection.meter import Kind, Reflections
 from dembound.disks.sources import place_of
 from dembound.disks.surroundings.frequencies import frequencies_of
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.spectra import smoothed
 from dembound.table import Box
 

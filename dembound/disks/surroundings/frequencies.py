@@ -9,7 +9,7 @@ from dembound.continuum import sizing
 from dembound.continuum.sizing import Signal
 from dembound.damping import Attenuation, Rayleigh, fitted
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.waves.wave import Wave
 
 LENGTHS = (200.0, 20.0)

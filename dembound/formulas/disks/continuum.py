@@ -32,7 +32,8 @@ from dembound.continuum.sizing import Signal
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import place_of
 from dembound.disks.surroundings.continuum import Surroundings
-from dembound.disks.surroundings.settings import ROUNDING, near_fields, signals_of
+from dembound.disks.surroundings.near_fields import near_fields, signals_of
+from dembound.disks.surroundings.settings import ROUNDING
 from dembound.formulas.cause import CONTINUUM, MOTIONS, Cause
 
 PASSED, STEEP, RETURNED = 4.5, 8.0, 0.5

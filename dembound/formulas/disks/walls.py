@@ -13,7 +13,7 @@ from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS, WALLS, Cause
 from dembound.holes import Hole, Rectangle
 from dembound.holes.hole import WALL

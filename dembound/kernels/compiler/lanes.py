@@ -154,9 +154,8 @@ def _compiled(
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Replace a function in compiled kernels by code that a function of (builder, values…) generates.
 
-    arguments : the numba types it takes; where one of them is `lanes` a number will do. Of arrays the code gets the
-    address of the first double. number : the code for single numbers and truth values in place of lanes and masks, in
-    functions that formulas of one pair call, too; None: numba has it, or it is not called for them.
+    arguments : the numba types it takes; for `lanes` a number will do; of arrays the code gets the address of the first
+    double. number : the code for single numbers and truth values in place of lanes and masks; None: there is none.
     """
 
     class Typing(AbstractTemplate):
@@ -193,13 +192,9 @@ _SINGLE = {lanes: types.float64, mask: types.boolean}
 
 
 def _is_single(given: Any, wanted: Any) -> bool:
-    """Whether types are single numbers and truth values wherever lanes and masks are wanted, and otherwise fit."""
-    return all(
-        isinstance(one, types.Number)
-        if other == lanes
-        else (one == types.boolean if other == mask else _fits(one, other))
-        for one, other in zip(given, wanted, strict=True)
-    )
+    """Whether types are single numbers and truth values where lanes and masks are wanted; no function has others."""
+    kinds = {lanes: types.Number, mask: types.Boolean}
+    return all(isinstance(one, kinds[other]) for one, other in zip(given, wanted, strict=True))
 
 
 def _fits(given: Any, wanted: Any) -> bool:

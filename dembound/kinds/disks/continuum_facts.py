@@ -17,14 +17,8 @@ from dembound.continuum.sizing import Signal
 from dembound.disks import step_cost
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings.continuum import Surroundings
-from dembound.disks.surroundings.settings import (
-    ROUNDING,
-    buried,
-    lasting_time,
-    least_element,
-    margin_below_surface,
-    signals_of,
-)
+from dembound.disks.surroundings.near_fields import lasting_time, signals_of
+from dembound.disks.surroundings.settings import ROUNDING, buried, least_element, margin_below_surface
 from dembound.formulas.disks.continuum import coarsest, elements_by_layer, largest_element, near_error
 from dembound.kinds.disks.packing_facts import packing_facts
 from dembound.words import Entries, percent

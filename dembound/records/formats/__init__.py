@@ -16,10 +16,11 @@ from dembound.records.formats.format import Format
 from dembound.records.formats.geonet import Geonet
 from dembound.records.formats.knet import Knet
 from dembound.records.formats.networks import Cwb, Nsmn, Unam
+from dembound.records.formats.numbers import MOTIONS, Flaw, Unknown
 from dembound.records.formats.peer import Peer
 from dembound.records.formats.seismic import is_sac_in_numbers, read_binary
 from dembound.records.formats.smc import Smc
-from dembound.records.formats.source import MOTIONS, USUAL, Flaw, Reading, Source, Unknown
+from dembound.records.formats.source import USUAL, Reading, Source
 from dembound.records.formats.text_columns import TextColumns
 from dembound.records.formats.volumes import Volumes
 from dembound.table import with_registered

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, Source, number_of
+from dembound.records.formats.numbers import COUNT, DECIMAL, number_of
+from dembound.records.formats.source import Source
 from dembound.waves.unit_names import unit_named
 
 KEY = re.compile(r"[A-Z][A-Z0-9_/^ ]*:")

@@ -9,7 +9,8 @@ import numpy as np
 
 from dembound.records.channel import Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import DECIMAL, Flaw, Source
+from dembound.records.formats.numbers import DECIMAL, Flaw
+from dembound.records.formats.source import Source
 
 HEADER = 17
 KIK_NET = {

@@ -11,7 +11,8 @@ import numpy as np
 
 from dembound.records.channel import Channel, Record
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import COUNT, DECIMAL, SAME, Flaw, Source, number_of
+from dembound.records.formats.numbers import COUNT, DECIMAL, Flaw, number_of
+from dembound.records.formats.source import SAME, Source
 
 GAL = 0.01
 """m/s²."""

@@ -5,7 +5,8 @@ import warnings
 from collections.abc import Sequence
 
 from dembound.records.channel import Record
-from dembound.records.formats.source import USUAL, Flaw, Source, Unknown, number_of
+from dembound.records.formats.numbers import Flaw, Unknown, number_of
+from dembound.records.formats.source import USUAL, Source
 
 FORMATS = ("MSEED", "SAC", "SACXY")
 """Names of the formats in ObsPy; the last one is SAC in numbers."""

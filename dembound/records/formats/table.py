@@ -10,7 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from dembound.gauge.reading.scope import BROKEN_OFF, SIGNS, UNIT_IN_NAME, joined
-from dembound.records.formats.source import END, MOTIONS, Flaw, Source, Unknown, number_of, quantity_named
+from dembound.records.formats.numbers import MOTIONS, Flaw, Unknown, number_of, quantity_named
+from dembound.records.formats.source import END, Source
 from dembound.waves.unit_names import unit_named
 
 MARKS = "#%!"

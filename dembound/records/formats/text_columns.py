@@ -13,26 +13,31 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.records.channel import Channel, Record
+from dembound.records.formats.column_checks import (
+    NUMBER,
+    PEAK,
+    compare_peaks,
+    require_motions,
+    require_no_card,
+    require_order,
+)
 from dembound.records.formats.format import Format
-from dembound.records.formats.source import (
+from dembound.records.formats.numbers import (
     BARE,
     COUNT,
     MOTIONS,
     QUANTITY,
-    SAME,
     SECONDS,
     Flaw,
-    Source,
-    number_of,
     quantities_named,
     require_increasing,
     seconds_of,
-)  # fmt: skip
+)
+from dembound.records.formats.source import SAME, Source
 from dembound.records.formats.table import EITHER, OTHER, Head, Table, head_of, increases, quantity_of, read_table
 from dembound.table import LARGEST, SMALLEST
 from dembound.waves.unit_names import unit_named
 
-NUMBER = r"([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[Ee][+-]?\d+)?)"
 STEP = re.compile(
     r"(?:\bdt\b|Δt|\bdelta ?t|\btime ?step|\bstep(?=\s*[=:])|\bdelta x(?=\t)"
     r"|\b(?:sampl\w*|time|digiti\w*) ?(?:interval|period|step)"
@@ -60,12 +65,6 @@ SAMPLES = re.compile(
 )
 """The number of samples in a header."""
 
-PEAK = re.compile(
-    r"\b(?:pg[avd]|\w*ppv|(?:peak|max(?:imum|\.)?)(?: ground| value)?(?: (?:acc|vel|disp)\w*\.?)?)"
-    rf"\s*(?:[\[(]([^\])]*)[\])])?\s*(?:[=:]|\"?,\"?)?\s*{NUMBER}\s*([^\s,;\"]*)",
-    re.IGNORECASE,
-)
-"""A peak in a header, its unit before or behind it."""
 
 DURATION = re.compile(
     r"(?:(?:^|[,;|]|=\s*[\d.]+\s|\b(?:s|secs?|sps|total)\s)\s*(?:dura(?:tion|ci[oó]n)|(?:record )?length)(?: time)?\s*"
@@ -74,8 +73,6 @@ DURATION = re.compile(
 )
 """The length of the record in a header, s, and not that of the strong motion in it."""
 
-CHANNELS = re.compile(r"\b(?:channels|components)(?:\s*[=:]\s*|\t)(\d{1,3})\b(?!\s*[-,;&/]\s*\d)", re.IGNORECASE)
-"""The number of channels in a header."""
 
 MISSING = frozenset(("999", "9999", "99999", "999999", "1e+06"))
 """Sizes of numbers that stand for missing samples, where they are far from all others."""
@@ -101,9 +98,6 @@ FAR = 2.0
 MOST = 0.9
 """Share of the lines of a deck with the next number from which on others are missing."""
 
-SMOOTHER = 0.7
-"""Ratio of mean differences between neighbours at which numbers contradict the order in which they are read."""
-
 
 class TextColumns(Format):
     """Of any separator; each column of values is a channel, called as in the header."""
@@ -118,7 +112,7 @@ class TextColumns(Format):
         """The channels of a file; raises Flaw for one that may be read in two ways."""
         if source.given.series and source.given.columns:
             raise Flaw("--series: is not allowed together with --columns")
-        _require_no_card(source)
+        require_no_card(source)
         table = _without_counter(source, read_table(source))
         heads = [head_of(name) for name in source.given.columns] or table.heads
         if source.given.columns and (len(heads) != table.width or table.ragged < len(table.rows)):
@@ -143,7 +137,7 @@ class TextColumns(Format):
             if count is not None and samples != count[0]:
                 raise Flaw(f"line {count[1]} states {count[0]} samples, there are {samples}; {_skip(count[1])}")
         if len(channels) > 1:
-            _compare_peaks(source, table, channels)
+            compare_peaks(source, table, channels)
         return Record("columns of text", "", tuple(channels))
 
 
@@ -172,7 +166,7 @@ def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated
         return True
     if (count is not None and count[0] == lines) or width < LONG:
         raise Flaw(f"has {width} numbers in a line without names: {EITHER}")
-    _require_order(table, series=True)
+    require_order(table, series=True)
     return True
 
 
@@ -190,14 +184,14 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
         raise Flaw(f'has a column "{spectra}", must have times; name the columns by --columns')
     chosen = [at for at in range(len(heads)) if at not in timed and heads[at].name != "-"]
     if not source.given.columns:
-        _require_motions(table, heads, values, timed, chosen)
+        require_motions(table, heads, values, timed, chosen)
     if timed:
         time = _times(source, table, heads[timed[0]], timed[0])
     else:
         if step is None:
             raise Flaw("has no column called time and states no time step; give --dt, or name the columns by --columns")
         if not source.given.columns:
-            _require_order(table, series=False)
+            require_order(table, series=False)
     channels = []
     names = {at: heads[at].name or (f"column {at + 1}" if len(chosen) > 1 else "") for at in chosen}
     for at, name in names.items():
@@ -217,49 +211,6 @@ def _columns(source: Source, table: Table, heads: Sequence[Head], step: Stated) 
     if not channels:
         raise Flaw("has no column of values; name the columns by --columns")
     return channels
-
-
-def _require_motions(
-    table: Table, heads: Sequence[Head], values: np.ndarray, timed: Sequence[int], chosen: Sequence[int]
-) -> None:
-    """Raise Flaw for values over periods, which are never negative, and for another number of channels than stated."""
-    about = any(re.search("spectr|谱", text, re.IGNORECASE) for _, text in table.header)
-    if (
-        any(heads[at].name == "T" or (about and heads[at].name in ("", "t")) for at in timed)
-        and (values[chosen] >= 0.0).all()
-    ):
-        at = timed[0] + 1
-        raise Flaw(f"column {at} may have periods, as no value is negative: name it by --columns, time if it has times")
-    for number, text in table.header if len(chosen) > 1 else ():
-        if (found := CHANNELS.search(text)) and int(found[1]) != len(chosen):
-            raise Flaw(f"line {number} states {found[1]} channels, there are {len(chosen)}; name them by --columns")
-
-
-def _require_no_card(source: Source) -> None:
-    """Raise Flaw for a card of LS-DYNA, the first numbers of a curve, with factors or offsets other than 1 and 0."""
-    lines = list(enumerate(source.lines, start=1))[source.given.skip :]
-    curve = next((at for at, (_, text) in enumerate(lines) if re.match(r"\*define_curve", text, re.IGNORECASE)), None)
-    for number, card in [] if curve is None else lines[curve + 1 :]:
-        fields = card.split(",") if "," in card else [card[at : at + 10] for at in range(0, 60, 10)]
-        if number_of(fields[0]) is not None:
-            factors, offsets = ([number_of(text) or 0.0 for text in some] for some in (fields[2:4], fields[4:6]))
-            if any(offsets) or any(factor not in (0.0, 1.0) for factor in factors):
-                said = f"line {number} has factors or offsets of the numbers"
-                raise Flaw(f"{said}; apply them, and leave it out by --skip {number}")
-            return
-
-
-def _compare_peaks(source: Source, table: Table, channels: Sequence[Channel]) -> None:
-    """Remark on a stated peak that none of several channels has; it may be that of their resultant."""
-    for number, text in table.header:
-        for found in PEAK.finditer(text):
-            named = unit_named(found[1] or found[3] or "")
-            if named is None or named.quantity not in MOTIONS:
-                continue
-            peak = float(found[2].replace(",", ".")) * named.size
-            peaks = [np.abs(each.values).max() for each in channels if each.quantity == MOTIONS[named.quantity]]
-            if peaks and all(abs(each - abs(peak)) > SAME * each for each in peaks):
-                source.remarks.append(f"line {number} states a peak that no channel has: {found[0].strip()}")
 
 
 def _single(source: Source, table: Table, numbers: np.ndarray, step: Stated) -> Channel:
@@ -396,14 +347,3 @@ def _require_step(step: Stated, between: float, at: int) -> None:
     if step is not None and abs(step[0] - between) > SAME * between:
         said = f"line {step[1]} states" if step[1] else "--dt: is"
         raise Flaw(f"{said} {step[0]:g} s, times in column {at + 1} are {between:g} s apart; name them by --columns")
-
-
-def _require_order(table: Table, *, series: bool) -> None:
-    """Raise Flaw if the numbers are much smoother in the other order than that in which they are read."""
-    values = np.array(table.rows[: table.ragged])
-    if len(values) < 2:
-        return
-    along, down = np.abs(np.diff(values.ravel())).mean(), np.abs(np.diff(values, axis=0)).mean()
-    if (down < SMOOTHER * along) if series else (along < SMOOTHER * down):
-        seem = "columns" if series else "one series"
-        raise Flaw(f"has {table.width} numbers in a line that seem to be {seem}: {EITHER}")

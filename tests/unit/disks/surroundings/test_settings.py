@@ -9,15 +9,8 @@ from disk_systems import LAMB
 from dembound.continuum import sizing
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Medium
-from dembound.disks.surroundings.settings import (
-    Buried,
-    buried,
-    lasting_time,
-    mesh_of,
-    near_fields,
-    settings_of,
-    signals_of,
-)
+from dembound.disks.surroundings.near_fields import lasting_time, near_fields, signals_of
+from dembound.disks.surroundings.settings import Buried, buried, mesh_of, settings_of
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 

@@ -10,7 +10,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import build
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS
 from dembound.formulas.disks.walls import (
     BETWEEN,

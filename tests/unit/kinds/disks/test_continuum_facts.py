@@ -8,7 +8,7 @@ from disk_systems import LAMB
 
 from dembound.disks.material.packing_waves import sent_back
 from dembound.disks.scene import build
-from dembound.disks.surroundings.settings import signals_of
+from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.disks.continuum import expected_errors, lattice_errors
 from dembound.kinds import with_changes
 from dembound.kinds.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
