@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.kernels import tables
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.laws.elastic import Limits
 
 Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
 State = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -128,7 +129,7 @@ class PlainPairs:
     """
 
     arrays: tables.Contacts
-    limits: tables.Limits
+    limits: Limits
     lost: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     def __post_init__(self) -> None:

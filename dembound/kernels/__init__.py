@@ -77,7 +77,8 @@ def kept_in(chosen: str, package: Path) -> Path:
 # Numba keeps compiled code until the file of the function itself changes. Kernels also contain functions from other
 # files, those of laws among them, so the code compiled from each state of all files has a separate folder.
 _HERE = Path(__file__).parent
+SOURCES = (_HERE, _HERE.parent / "laws", _HERE.parent / "pairwise.py")
 _KEPT = kept_in(numba.config.CACHE_DIR, _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
-_DIGEST = sources_digest(_HERE, _HERE.parent / "laws", *registered_laws())
+_DIGEST = sources_digest(*SOURCES, *registered_laws())
 prune(_KEPT, _DIGEST)
 numba.config.CACHE_DIR = str(_KEPT / _DIGEST)  # type: ignore[attr-defined]

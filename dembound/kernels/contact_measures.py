@@ -3,7 +3,6 @@
 import numpy as np
 from numba import njit, types
 
-from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum, largest
 from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart, in_chunks
@@ -11,6 +10,7 @@ from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
 from dembound.kernels.pair_law import acts, bond_energy, bond_room, contact_energy, contact_room
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
+from dembound.pairwise import P
 
 TURN = 0.01
 """Largest rotation of a pair under the law of small displacements, whose error is half its square."""

@@ -5,7 +5,7 @@ A pair's motion is three numbers: the distance of the centres, the tangential di
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which rotates with the pair automatically.
 
-The constants of pairs are those of kernels/columns.py and of the law, whose functions (pair_law.py) are called. Under a
+The constants of pairs are those of pairwise.py and of the law, whose functions (pair_law.py) are called. Under a
 stress at rest a pair has a stretch, shear and rotation from the start (compiler/start_strain.py).
 Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
 """
@@ -13,7 +13,6 @@ Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j
 import numpy as np
 from numba import njit
 
-from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
 from dembound.kernels.compiler.lanes import choose, larger
 from dembound.kernels.compiler.limits import factor_of
@@ -21,6 +20,7 @@ from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
+from dembound.pairwise import P
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""

@@ -7,7 +7,6 @@ PFC's linear model. Velocities are those half a step before the displacements (`
 
 from numba import njit
 
-from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, U
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
@@ -20,6 +19,7 @@ from dembound.kernels.law import push as push_law
 from dembound.kernels.pair_law import normal
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
 from dembound.kernels.tables import Dashed
+from dembound.pairwise import P
 
 
 @in_chunks

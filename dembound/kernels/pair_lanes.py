@@ -7,7 +7,6 @@ and, where intact bonds keep the geometry of the start, from then on.
 import numpy as np
 from numba import njit
 
-from dembound.kernels.columns import P
 from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
 from dembound.kernels.compiler.lanes import (
     LANES,
@@ -31,6 +30,7 @@ from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, closing_work, push_pair
 from dembound.kernels.lane_step import INLINED, next_place, place_of
 from dembound.kernels.pair_law import acts, bond, breaks, most_shear, normal, shear_of, slip_at
+from dembound.pairwise import P
 
 _ALL = np.uint8(2**LANES - 1)
 _INTACT = np.uint8(INTACT)

@@ -1,9 +1,8 @@
 """The functions by which the loops over pairs call their law, which the type of its limits chooses.
 
-A law is one file in laws/: its constants (`COLUMNS`), its limits and the functions below, each registered with
-`is_pair_law`. They are written once, for numbers of one pair and for lanes of eight, with the functions of
-compiler/lanes.py in place of conditions; k is the pair's row of constants, kind its row of limits where these differ
-by type. The loops know the rest: geometry, contacts that open, the test against a limit, bonds that break.
+A law is one file in laws/: its constants (`COLUMNS`), its limits and the functions below, see pairwise.is_pair_law. k
+is the pair's row of constants, kind its row of limits where these differ by type. The loops know the rest: geometry,
+contacts that open, the test against a limit, bonds that break.
 """
 
 from typing import Any
@@ -11,7 +10,8 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST
-from dembound.kernels.law import Kernel, answer, generic
+from dembound.kernels.law import answer, generic
+from dembound.pairwise import COMPILERS, PAIR_LAWS
 
 INLINED: dict[str, Any] = FAST | {"inline": "always"}
 """Options of small functions, which become part of the loops that call them."""
@@ -77,12 +77,12 @@ def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
     """Least relative motion (m) of two surfaces after which an intact bond may break."""
 
 
-def is_pair_law(limits: type, **kernels: Kernel) -> None:
-    """Register the functions of a law, each explained at the one of its name in this module, for limits of a type."""
-    for name, kernel in kernels.items():
-        answer(globals()[name], limits, kernel)
+def _compile(limits: type, functions: dict[str, Any]) -> None:
+    """Make the functions above call those of a law for limits of its type."""
+    for name, function in functions.items():
+        answer(globals()[name], limits, njit(**INLINED)(function))
 
 
-def part_of_law(function: Any) -> Kernel:
-    """Compile a function of a law, as a part of the loops that call it."""
-    return njit(**INLINED)(function)
+COMPILERS.append(_compile)
+for _limits, _functions in PAIR_LAWS.items():
+    _compile(_limits, _functions)

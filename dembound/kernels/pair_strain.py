@@ -3,9 +3,9 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.columns import P
 from dembound.kernels.common import FAST, U
 from dembound.kernels.compiler.start_strain import began_with
+from dembound.pairwise import P
 
 
 @njit(**FAST, inline="always")

@@ -4,13 +4,12 @@ PFC2D's linear parallel bond for total small displacements. It is exact as long 
 bond breaks, which a confining stress above ρcv ensures for waves of particle velocity v.
 """
 
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from dembound.kernels.columns import PLACE, Column, index
-from dembound.kernels.tables import Limits
 from dembound.laws.law import Law, Moduli, Springs
+from dembound.pairwise import PLACE, Column, index
 
 COLUMNS = (
     *PLACE,
@@ -25,6 +24,30 @@ COLUMNS = (
 """Constants of a pair."""
 
 K = index(COLUMNS)
+"""Numbers of the constants by name."""
+
+
+class Limits(NamedTuple):
+    """Friction of contacts and strength of bonds: numbers, or columns (p,) by row of constants (pairwise.limit_of).
+
+    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py. Kernels for
+    columns are compiled separately, so all four are numbers or all are columns. factor : 1.0, or (b,) by which the
+    strengths of each pair's bond, tension and cohesion, are multiplied (kernels/compiler/limits.py), which is compiled
+    separately too.
+    """
+
+    friction: float | np.ndarray
+    tension: float | np.ndarray
+    cohesion: float | np.ndarray
+    tan_fa: float | np.ndarray
+    geometry: int
+    factor: float | np.ndarray = 1.0
+
+
+def in_columns(limits: np.ndarray, geometry: int) -> Limits:
+    """Limits (p, 4) of rows of constants as columns: friction, tension, cohesion and tan_fa."""
+    friction, tension, cohesion, tan_fa = np.ascontiguousarray(limits.T)
+    return Limits(friction, tension, cohesion, tan_fa, geometry)
 
 
 class Elastic(Law):

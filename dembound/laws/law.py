@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from dembound.kernels.columns import STRAIN, Column, P
+from dembound.pairwise import STRAIN, Column, P
 
 
 def lattice_moduli(
@@ -70,7 +70,7 @@ class Law(ABC):
     Attributes
     ----------
     name : value of `material.law`.
-    columns : constants of pairs, those of kernels.columns.PLACE first.
+    columns : constants of pairs, those of pairwise.PLACE first.
     has_history : whether contacts open, slide and break (kernels/contacts.py).
     """
 

@@ -10,11 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from dembound.kernels.compiler.lanes import at_most, magnitude
-from dembound.kernels.compiler.limits import limit_of
-from dembound.kernels.pair_law import is_pair_law, part_of_law
-from dembound.kernels.tables import Limits
-from dembound.laws.elastic import Elastic, K
+from dembound.laws.elastic import Elastic, K, Limits
+from dembound.pairwise import at_most, is_pair_law, limit_of, magnitude
 
 
 class LinearPBond(Elastic):
@@ -29,49 +26,41 @@ class LinearPBond(Elastic):
         return Elastic.name
 
 
-@part_of_law
 def acts(limits, constants, k):
     """See pair_law.acts."""
     return constants[k, K.kn] > 0.0 or constants[k, K.ks] > 0.0
 
 
-@part_of_law
 def normal(limits, constants, k, overlap):
     """N = k_n a, see pair_law.normal."""
     return constants[k, K.kn] * overlap
 
 
-@part_of_law
 def stored_between(limits, constants, k, before, now):
     """½k_n (a₂² − a₁²), see pair_law.stored_between."""
     return 0.5 * (constants[k, K.kn] * ((now - before) * (now + before)))
 
 
-@part_of_law
 def shear_of(limits, constants, k, shear, slip):
     """S = k_s (s − slip), see pair_law.shear_of."""
     return constants[k, K.ks] * (shear - slip)
 
 
-@part_of_law
 def slip_at(limits, constants, k, shear, force):
     """The slip s − S/k_s, see pair_law.slip_at."""
     return shear - force * (1.0 / constants[k, K.ks])
 
 
-@part_of_law
 def most_shear(limits, kind, push):
     """Friction, μN, see pair_law.most_shear."""
     return limit_of(limits.friction, kind) * push
 
 
-@part_of_law
 def bond(limits, constants, k, stretch, shear, turn):
     """Forces of three springs, see pair_law.bond."""
     return constants[k, K.bond_kn] * stretch, constants[k, K.bond_ks] * shear, constants[k, K.bending] * turn
 
 
-@part_of_law
 def breaks(limits, constants, k, kind, factor, pull, side, moment):
     """Stresses at the edge of the bond beside its strengths, see pair_law.breaks."""
     stress = pull * constants[k, K.per_area]
@@ -81,20 +70,17 @@ def breaks(limits, constants, k, kind, factor, pull, side, moment):
     return at_most(factor * limit_of(limits.tension, kind), edge), at_most(strength, sheared)
 
 
-@part_of_law
 def contact_energy(limits, constants, k, overlap, slid):
     """½k_n a² + ½k_s s², see pair_law.contact_energy."""
     return 0.5 * (constants[k, K.kn] * overlap * overlap + constants[k, K.ks] * slid * slid)
 
 
-@part_of_law
 def bond_energy(limits, constants, k, stretch, shear, turn):
     """Energy of three springs, see pair_law.bond_energy."""
     along = constants[k, K.bond_kn] * stretch * stretch + constants[k, K.bond_ks] * shear * shear
     return 0.5 * along + 0.5 * constants[k, K.bending] * turn * turn
 
 
-@part_of_law
 def contact_room(limits, constants, k, kind, overlap, stuck):
     """Up to no overlap, and up to friction, which changes with the overlap, too; see pair_law.contact_room."""
     room = overlap
@@ -105,7 +91,6 @@ def contact_room(limits, constants, k, kind, overlap, stuck):
     return room
 
 
-@part_of_law
 def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
     """Up to the strengths; stretch, shear and R̄θ change by at most the relative motion; see pair_law.bond_room."""
     per_area = constants[k, K.per_area]

@@ -8,11 +8,11 @@ from dembound.disks.contacts.pairs import ContactHistory, Pairs, in_places
 from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import near
-from dembound.kernels.columns import STRAIN
-from dembound.kernels.compiler.limits import in_columns
-from dembound.kernels.tables.contacts import Cells, Limits, PairRows
+from dembound.kernels.tables.contacts import Cells, PairRows
+from dembound.laws.elastic import Limits, in_columns
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.packings.tiling import Assembly
+from dembound.pairwise import STRAIN
 
 CELL = 4.0
 """Least side of a cell over the largest diameter.

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
-from dembound.kernels.columns import P, of_law
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.tables import PairRows
+from dembound.pairwise import P, of_law
 
 LEAST_SHARE = 0.3
 """Share of the lanes of a pair row that have to hold pairs; others are computed one by one."""

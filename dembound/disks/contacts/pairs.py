@@ -10,17 +10,18 @@ from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels.columns import P, of_law
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
-from dembound.kernels.tables.contacts import Contacts, Limits
+from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
+from dembound.laws.elastic import Limits
 from dembound.motion.kind import Finding
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.motion.trackers import Run
 from dembound.packings.tiling import Assembly
+from dembound.pairwise import P, of_law
 from dembound.places import is_within
 from dembound.table import EVERYWHERE, Box
 

@@ -19,8 +19,8 @@ from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.sliding import strains_of, strains_with_slip, within_friction
-from dembound.kernels.columns import STRAIN
 from dembound.packings.tiling import Assembly
+from dembound.pairwise import STRAIN
 from dembound.places import ROUNDING
 
 

@@ -11,13 +11,12 @@ from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels.columns import PLACE
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
-from dembound.kernels.tables.contacts import Limits
+from dembound.laws.elastic import Limits, in_columns
 from dembound.laws.law import Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
+from dembound.pairwise import PLACE
 
 LEVEL = 1e-6
 """Largest deviation from straight, and difference of radii, over the radius: rounding."""

@@ -16,10 +16,10 @@ import numpy as np
 
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
-from dembound.kernels.columns import STRAIN
 from dembound.laws import Moduli, Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
+from dembound.pairwise import STRAIN
 
 REACH = 5.0
 """Diameters on either side of a joint in which masses and springs move its effective heights to it."""

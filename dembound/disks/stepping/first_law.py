@@ -14,9 +14,9 @@ from dembound.disks.stepping.balance import Balance
 from dembound.disks.stepping.carriers import RestForces
 from dembound.disks.stepping.scene_parts import DiskParts, Start
 from dembound.kernels import contacts as kernel
-from dembound.kernels.columns import P
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import INTACT, SHEAR, TENSION, UPDATED
+from dembound.pairwise import P
 
 
 def never_elastic_again(case: DiskCase) -> str:

@@ -15,15 +15,15 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.columns import STRAIN, of_law
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.load_factor import least_factors
+from dembound.laws.elastic import in_columns
 from dembound.laws.linearpbond import BOND_LIMITS, limit_in_words, limit_lines
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
+from dembound.pairwise import STRAIN, of_law
 from dembound.places import is_within
 from dembound.table import EVERYWHERE, Box
 

@@ -20,8 +20,9 @@ from dembound.disks.stepping.damped_ground import disk_memories, ties_rememberin
 from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.kernels.contacts import UPDATED
-from dembound.kernels.tables.contacts import LaneRows, Limits
+from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
+from dembound.laws.elastic import Limits
 from dembound.motion.part import Tie
 from dembound.motion.state import Layout
 from dembound.packings.tiling import Assembly

@@ -20,6 +20,7 @@ from numba.core.typing.templates import AbstractTemplate, infer_global, signatur
 from numba.extending import models, register_model
 
 from dembound.kernels.common import FASTMATH
+from dembound.pairwise import at_most, choose, larger, magnitude, root, with_sign
 
 LANES = 8
 """Slots computed at once."""
@@ -85,36 +86,6 @@ def where_equal(array: np.ndarray, i: int, value: int) -> np.ndarray:
 def note_bits(array: np.ndarray, i: int, chosen: np.ndarray) -> None:
     """Write eight bytes to a contiguous array (n,) from index i on, 1 where chosen, else 0."""
     array[int(i) : int(i) + LANES] = chosen
-
-
-def choose(chosen: np.ndarray, values: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Values where chosen, else the others."""
-    return np.where(chosen, values, others)
-
-
-def at_most(values: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    """Mask of values that are not above limits."""
-    return values <= limits
-
-
-def larger(values: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """The larger of two numbers in each lane."""
-    return np.where(values <= others, others, values)
-
-
-def magnitude(values: np.ndarray) -> np.ndarray:
-    """Absolute values."""
-    return np.abs(values)
-
-
-def with_sign(values: np.ndarray, signs: np.ndarray) -> np.ndarray:
-    """Magnitudes of values with the signs of others."""
-    return np.copysign(values, signs)
-
-
-def root(values: np.ndarray) -> np.ndarray:
-    """Square roots."""
-    return np.sqrt(values)
 
 
 def lane(values: np.ndarray, k: int) -> float:

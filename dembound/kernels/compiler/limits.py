@@ -1,29 +1,14 @@
-"""Limits of contacts and bonds, the same for all, by type of contact or by bond, see `Limits`."""
+"""Limits of contacts and bonds, the same for all, by type of contact or by bond, see laws/."""
 
 from typing import Any
 
-import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
 from dembound.kernels.compiler.lanes import LANES, lanes, load
-from dembound.kernels.tables import Limits
-
-
-def in_columns(limits: np.ndarray, geometry: int) -> Limits:
-    """Limits (p, 4) of rows of constants as columns: friction, tension, cohesion and tan_fa."""
-    friction, tension, cohesion, tan_fa = np.ascontiguousarray(limits.T)
-    return Limits(friction, tension, cohesion, tan_fa, geometry)
-
-
-def limit_of(limit: Any, contact_type: Any) -> Any:
-    """One of the limits for a type of contact: a number for all types, or its row of a column (p,).
-
-    Compiled code for numbers is the number itself.
-    """
-    return limit if isinstance(limit, float) else limit[contact_type]
+from dembound.pairwise import limit_of
 
 
 @infer_global(limit_of)
@@ -42,7 +27,7 @@ def _limit_of(context: Any, builder: Any, sig: Any, args: Any) -> Any:
 
 
 def factor_of(factor: Any, c: Any) -> Any:
-    """The factor of the strengths of the bond of pair c, see `Limits`; compiled code for a number is 1.0."""
+    """The factor of the strengths of the bond of pair c, see laws/; compiled code for a number is 1.0."""
     return factor if isinstance(factor, float) else factor[c]
 
 

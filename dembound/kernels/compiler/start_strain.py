@@ -8,7 +8,7 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
-from dembound.kernels.columns import STRAIN
+from dembound.pairwise import STRAIN
 
 
 def began_of(constants: np.ndarray) -> float | np.ndarray:

@@ -1,7 +1,7 @@
 """Bundles of arrays, the arguments of kernels."""
 
 from dembound.kernels.tables.bars import BarLayers, Softening
-from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, NeighbourTable, PairRows
 from dembound.kernels.tables.grid import (
     ALONG,
     Absorber,
@@ -55,7 +55,6 @@ __all__ = [
     "Grid",
     "LaneBonded",
     "LaneRows",
-    "Limits",
     "Links",
     "Log",
     "Memories",

@@ -54,7 +54,7 @@ class LaneRows(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts with a history, each listed once; see kernels/contacts.py for forces, kernels/columns.py for constants.
+    """Contacts with a history, each listed once; see kernels/contacts.py for forces, pairwise.py for constants.
 
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, c).
     began : (p, 3) stretch and shear (m) and rotation that pairs have from the start; 0.0 without a stress at rest.
@@ -84,23 +84,6 @@ class Contacts(NamedTuple):
     force: np.ndarray
     start: np.ndarray
     end: np.ndarray
-
-
-class Limits(NamedTuple):
-    """Friction of contacts and strength of bonds: numbers, or columns (p,) by row of constants (limits.limit_of).
-
-    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py. Kernels for
-    columns are compiled separately, so all four are numbers or all are columns. factor : 1.0, or (b,) by which the
-    strengths of each pair's bond, tension and cohesion, are multiplied (limits.factor_of), which is compiled separately
-    too.
-    """
-
-    friction: float | np.ndarray
-    tension: float | np.ndarray
-    cohesion: float | np.ndarray
-    tan_fa: float | np.ndarray
-    geometry: int
-    factor: float | np.ndarray = 1.0
 
 
 class PairRows(NamedTuple):

@@ -1,11 +1,11 @@
 """Arrays of laws, of disks and of bars; a law's type chooses its kernels."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dembound.kernels.tables.bars import Softening
-from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, NeighbourTable, PairRows
 
 
 class Links(NamedTuple):
@@ -27,7 +27,7 @@ class WatchedLinks(NamedTuple):
 
     links: Links
     contacts: Contacts
-    limits: Limits
+    limits: Any
     origin: np.ndarray
     skin: float
     cells: Cells
@@ -46,7 +46,7 @@ class Bonded(NamedTuple):
     """
 
     contacts: Contacts
-    limits: Limits
+    limits: Any
     origin: np.ndarray
     skin: float
     cells: Cells
@@ -84,7 +84,7 @@ class Dashed(NamedTuple):
 
     law: Bonded | LaneBonded
     contacts: Contacts
-    limits: Limits
+    limits: Any
     viscosity: np.ndarray
     drag: np.ndarray
     taken: np.ndarray

@@ -13,8 +13,7 @@ from dembound.disks.material.constants import bond_factors, brick_constants, gro
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.files import make_folder
-from dembound.kernels.compiler.limits import in_columns
-from dembound.kernels.tables.contacts import Limits
+from dembound.laws.elastic import Limits, in_columns
 from dembound.laws.linearpbond import limit_in_words, limit_lines
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
@@ -29,7 +28,7 @@ from dembound.studies.library.record import Record
 class WatchedContact(NamedTuple):
     """A contact or bond between the disks of two monitors.
 
-    name : both, with a comma. monitors : (2,) their numbers in the library. constants : see kernels/columns.py.
+    name : both, with a comma. monitors : (2,) their numbers in the library. constants : see pairwise.py.
     limits : its friction and strength. settled : (3,) stretch (m), shear (m) and turn at the end of the static stage,
     zero without one.
     """

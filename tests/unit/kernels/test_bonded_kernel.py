@@ -12,7 +12,8 @@ from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
 from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
 from dembound.kernels.near import moved
-from dembound.kernels.tables import Bonded, Cells, Contacts, Limits, Log
+from dembound.kernels.tables import Bonded, Cells, Contacts, Log
+from dembound.laws.elastic import Limits
 
 PARTICLES, PAIRS = 25, 60
 STEP = 0.1

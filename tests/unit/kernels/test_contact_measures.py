@@ -5,10 +5,10 @@ import pytest
 from moving_pairs import PAIRS, PARTICLES, STEP, UNBREAKABLE, two
 from plain_kernels import PlainPairs, alone, one_pair, random_pairs
 
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
-from dembound.kernels.tables import Contacts, Limits
+from dembound.kernels.tables import Contacts
+from dembound.laws.elastic import Limits, in_columns
 
 
 def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:

@@ -7,7 +7,6 @@ import pytest
 from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
 from plain_kernels import PlainPairs, alone, one_pair, random_pairs
 
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import (
     BONDED,
@@ -22,7 +21,7 @@ from dembound.kernels.contacts import (
     UPDATED,
     start_from_displacements,
 )
-from dembound.kernels.tables import Limits
+from dembound.laws.elastic import Limits, in_columns
 
 WEAK = Limits(friction=0.5, tension=0.6, cohesion=0.6, tan_fa=0.6, geometry=UPDATED)
 

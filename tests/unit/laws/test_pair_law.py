@@ -7,10 +7,10 @@ from numba import njit
 from dembound.casefile.types import LAWS
 from dembound.kernels.common import FAST, U
 from dembound.kernels.compiler.lanes import bits, byte_of, load, store
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contacts import UPDATED, closing_work
 from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
 from dembound.laws import Moduli
+from dembound.laws.elastic import in_columns
 
 OPTIONS = {name: value for name, value in FAST.items() if name != "cache"}
 WITH_HISTORY = [name for name, law in LAWS.items() if law.has_history]

@@ -9,9 +9,8 @@ from small_cases import PUSHED, SPALLING, small
 from dembound.accuracy.runner import measure
 from dembound.disks.stepping.load_factor import LOAD_FACTOR, load_factor_in_words
 from dembound.errors import CaseError
-from dembound.kernels.compiler.limits import in_columns
-from dembound.kernels.tables import Limits
 from dembound.kinds.disks.kind import Disks
+from dembound.laws.elastic import Limits, in_columns
 from dembound.laws.linearpbond import LIMITS, limit_in_words, limit_lines
 from dembound.running import Progress, plan, resume_case, run_case
 

@@ -7,7 +7,8 @@ from numba import config, njit
 from dembound.kernels.calls import Given, Motion, entered
 from dembound.kernels.common import FAST, MAKES
 from dembound.kernels.compiler.bundles import Written, kind_of
-from dembound.kernels.tables import NO_SIDES, Body, Bonded, Cells, Contacts, Limits, Log, Supports
+from dembound.kernels.tables import NO_SIDES, Body, Bonded, Cells, Contacts, Log, Supports
+from dembound.laws.elastic import Limits
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
 
