@@ -4,7 +4,6 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
 from dembound.results.compare import compare
 
 TIME = np.linspace(0.0, 1.0, 101)
@@ -68,15 +67,6 @@ def test_all_twins_share_one_line_for_each_run(tmp_path):
     assert found[2].apart == pytest.approx(0.5)  # in height
 
 
-def test_runs_that_cannot_be_compared_are_refused(tmp_path):
-    paths = [record(tmp_path / f"{name}.h5", name, {name: (TIME, TIME, TIME)}) for name in "ab"]
-    with pytest.raises(CaseError, match="has no monitor in common"):
-        compare(paths[0], paths[1:], "velocity")
-    still = record(tmp_path / "still.h5", "still", {"a": (TIME, 0.0 * TIME, 0.0 * TIME)})
-    with pytest.raises(CaseError, match=r"still\.h5: its velocity is zero at the monitors, and over the time"):
-        compare(still, paths[:1], "velocity")
-
-
 def test_what_is_still_in_the_reference_is_left_out_and_the_others_are_compared(tmp_path):
     moves, noise, late = np.sin(TIME), 1e-12 * np.sin(50.0 * TIME), 1.0 * (TIME > 0.6)
     columns = {"P": moves, "P.free_field": noise, "Q": 0.0 * TIME, "late": late}
@@ -99,7 +89,6 @@ def test_stresses_are_compared_in_megapascals(spalled_run, tmp_path):
     (found,) = compare(spalled_run, [run], "stress")
 
     assert (found.component, found.unit, found.place) == ("x", "MPa", "0.525 m")
-    assert (found.rms, found.peak, found.across) == (pytest.approx(0.25), pytest.approx(0.25), None)
     assert (found.last, found.reference_last) == (pytest.approx(last), pytest.approx(last / 1.25))
 
 

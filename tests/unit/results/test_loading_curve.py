@@ -47,7 +47,3 @@ def test_cracks_count_by_kind_and_time() -> None:
     assert [found.cracks(shear=shear) for shear in (False, True)] == [2, 1]
     assert found.cracks(shear=False, until=2.0) == 1
     assert np.isnan(curve(crack_time=()).first_crack)
-
-
-def test_too_few_snapshots_give_no_moduli() -> None:
-    assert np.isnan(curve().elastic(0.5, 0.501)).all()

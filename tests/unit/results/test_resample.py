@@ -6,7 +6,6 @@ import pytest
 from dembound.results.compare import at_times
 
 REQUESTED = np.sort(np.random.default_rng(0).uniform(0.0, 10.0, 5000))
-STEP = 0.05
 
 
 def error(motion, samples: int) -> tuple[float, float, float]:
@@ -18,7 +17,7 @@ def error(motion, samples: int) -> tuple[float, float, float]:
     return by_cubics / np.linalg.norm(expected), by_lines / np.linalg.norm(expected), float(found.max())
 
 
-@pytest.mark.parametrize("samples", [5, 8, 20])
+@pytest.mark.parametrize("samples", [5, 20])
 def test_sines_have_the_error_of_a_spline(samples: int) -> None:
     # a cubic spline errs by h⁴f⁗/384 at most, (2π/n)⁴/384 of a sine; at its ends, of f⁗h⁴ times 9/384, twice in 10
     # periods of n intervals; RMS over RMS of a sine √2 of it where it errs alike everywhere
@@ -29,8 +28,6 @@ def test_sines_have_the_error_of_a_spline(samples: int) -> None:
 
 JUMPS = {
     "step": lambda time: 1.0 * (time > 3.03),
-    "square wave": lambda time: np.sign(np.sin(2.0 * np.pi * (time - 0.03))),
-    "decay after a jump": lambda time: np.where(time > 3.03, np.exp(3.03 - time), 0.0),
     "sine that jumps to another": lambda t: np.where(t < 5.03, np.sin(2 * np.pi * t), 1.5 + np.sin(4 * np.pi * t)),
 }
 
@@ -43,21 +40,8 @@ def test_a_jump_is_crossed_straight(name: str) -> None:
     assert largest <= max(JUMPS[name](REQUESTED)) * (1.0 + 1e-3)
 
 
-def test_steep_fronts_are_no_worse_than_by_lines() -> None:
-    for width in (1.0, 1.5, 2.0, 3.0, 4.0):
-        found, straight, _ = error(lambda time, w=width: np.clip((time - 3.03) / (w * STEP), 0.0, 1.0), 20)
-        assert found < straight
-
-
 def test_samples_are_kept_and_ends_go_on() -> None:
     time, values = np.linspace(0.0, 1.0, 11), np.random.default_rng(1).standard_normal((11, 2))
     assert at_times(time, values, time) is values
     np.testing.assert_allclose(at_times(time, values, time[2:7] + 1e-15), values[2:7], atol=1e-13)
     np.testing.assert_allclose(at_times(time, values, np.array([-1.0, 2.0])), values[[0, -1]], atol=1e-13)
-
-
-def test_few_samples_are_joined_by_lines() -> None:
-    for count in (1, 2, 3):
-        time, requested = np.arange(float(count)), np.array([0.25, 5.0])
-        expected = [0.5 * (count > 1), 2.0 * (count - 1)]
-        np.testing.assert_allclose(at_times(time, 2.0 * time, requested), expected)

@@ -1,6 +1,7 @@
 """Entries of the summary of a run."""
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories
-from dembound.results.summary import _fields_left_out, arrival, summarise
+from dembound.results.summary import arrival, summarise
+from dembound.results.text_files import write_json
 from dembound.running import plan
 
 SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
@@ -35,7 +37,6 @@ def test_an_infinite_step_limit_is_null(bar, tmp_path) -> None:
 
 def test_energies_are_those_of_the_last_entry_and_the_rate_that_of_stepping_alone(bar, tmp_path) -> None:
     summary = summary_of(plan(bar()), tmp_path / "run.h5", 60, 6)
-    assert summary["seconds"] == SECONDS
     assert summary["wall_time"] == 2.75
     assert summary["particle_steps_per_second"] == 40 * 60 / 2.0
     found = summary["energy"]
@@ -66,11 +67,14 @@ def test_arrival_is_where_half_the_peak_is_passed_between_two_samples() -> None:
     assert arrival(TIME, np.zeros((5, 2))) == of("x", 0.0, None, None)
 
 
-def test_fields_that_are_not_kept_are_named_where_they_are_large(bar) -> None:
-    few, many = {"packing.size": [10.0, 1.0]}, {"packing.size": [500.0, 12.0], "run.time_step": 1e-4}
-    for number, size, said in (
-        (0, few, []),
-        (0, many, ["fields: no snapshot is kept, 1.15 MB each"]),
-        (1, many, []),
-    ):
-        assert _fields_left_out(plan(bar({**size, "output.snapshots": number}))) == said
+def refused(constant: str) -> float:
+    raise AssertionError(constant)
+
+
+def test_numbers_that_are_not_finite_are_null(tmp_path: Path) -> None:
+    values = {"a": math.nan, "b": [1.0, math.inf, {"c": (-math.inf, "NaN", True, None)}], "d": 1e308}
+    write_json(tmp_path / "found.json", values)
+    found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"), parse_constant=refused)
+
+    assert found == {"a": None, "b": [1.0, None, {"c": [None, "NaN", True, None]}], "d": 1e308}
+    assert [path.name for path in tmp_path.iterdir()] == ["found.json"]
