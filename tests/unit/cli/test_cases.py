@@ -2,8 +2,6 @@
 
 import json
 
-from dembound.cli.cases import peaks
-
 
 def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp_path) -> None:
     answer = dembound("run", written())
@@ -16,19 +14,6 @@ def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp
         "  next: dembound report results/bar",
         "        dembound estimate results/bar",
     ]
-
-
-def test_of_many_monitors_the_first_are_printed_in_one_unit() -> None:
-    each = {"component": "y", "peak_velocity": -0.5, "peak_time": 0.25}
-    rest = {"component": "x", "peak_velocity": 0.0, "peak_time": None}
-    assert peaks({}) == []
-    assert peaks({"P": each | {"peak_velocity": 2.0}, "rest": rest, **{f"P{k}": each for k in range(10)}})[:4] == [
-        "monitor  component  peak (m/s)  at (ms)",
-        "P              v_y           2      250",
-        "rest             -           0        -",
-        "P0             v_y         0.5      250",
-    ]
-    assert peaks({f"P{k}": each for k in range(12)})[-1] == "… and 2 more in summary.json"
 
 
 def test_nothing_is_replaced_unseen(dembound, written, tmp_path) -> None:

@@ -9,7 +9,6 @@ import threading
 import h5py
 import pytest
 
-from dembound.__main__ import main
 from dembound.results.folder import Folder
 from dembound.running import job
 
@@ -35,11 +34,8 @@ def ended(number: str, hangups: str = "SIG_DFL") -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize(
-    "number", ["SIGINT", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGTERM", "SIGHUP"))]
-)
-def test_a_signal_during_imports_has_its_line_and_code(number) -> None:
-    assert ended(number) == (128 + getattr(signal, number), "dembound: stopped\n")
+def test_a_signal_during_imports_has_its_line_and_code() -> None:
+    assert ended("SIGINT") == (128 + signal.SIGINT, "dembound: stopped\n")
 
 
 def test_a_hangup_that_is_to_be_ignored_is_ignored() -> None:
@@ -90,8 +86,6 @@ def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp
     finally:
         done.set()
         other.join()
-    answer = dembound("resume", "results/bar")
-    assert (answer.code, answer.err) == (2, "results/bar: there is no such folder of results\n")
 
 
 def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path) -> None:
@@ -123,7 +117,6 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
     before = record.read_bytes()
     change = ("--set", "run.safety=0.5")
     for arguments in (
-        ("results/bar/run.h5", *change),
         ("results/bar", *change),
         (tmp_path / "results" / "bar", *change, "--output", "./results", "--name", "bar"),
     ):
@@ -134,18 +127,11 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
         assert line.endswith("bar/run.h5, from which the case is read; give another --name or --output")
     assert record.read_bytes() == before
 
-    for arguments in (("--name", "half", *change), ("--output", "other", *change), ()):
-        assert dembound("rerun", "results/bar", *arguments).code == 0
-    assert (tmp_path / "results" / "half" / "run.h5").is_file()
-    assert (tmp_path / "other" / "bar" / "run.h5").is_file()
+    assert dembound("rerun", "results/bar", "--name", "half", *change).code == 0
 
 
 def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_are_one_line(dembound, written) -> None:
-    # after the end of the run
-    first = dembound("run", written("bar", {"wave.pulse.start": 1.0}))
-    again = dembound("resume", "results/bar", "--until", "0.011")
-    assert "bar: warning: " in first.err
-    assert {line.partition(": ")[0] for line in again.err.splitlines()} == {"bar"}
+    dembound("run", written())
 
     with open("results/bar/summary.json", "w") as file:
         file.write("{")
@@ -162,30 +148,6 @@ def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_a
         assert answer.code == 5
         (line,) = answer.err.splitlines()
         assert said in line
-
-
-def test_memory_that_runs_out_has_one_line(dembound, written, monkeypatch) -> None:
-    def without_memory(*_: object) -> None:
-        raise MemoryError("Unable to allocate 14.5 MiB")
-
-    monkeypatch.setattr(job, "write_paraview", without_memory)
-    answer = dembound("run", written())
-    assert answer.code == 3
-    assert [line for line in answer.err.splitlines() if "warning" not in line] == [
-        "dembound: memory ran out: Unable to allocate 14.5 MiB",
-        "bar: histories so far are in results/bar.partial",
-        "bar: to continue: dembound resume results/bar.partial",
-    ]
-
-
-def test_too_few_addresses_are_said_before_libraries_are_loaded(monkeypatch, capsys) -> None:
-    monkeypatch.setattr("dembound.__main__.address_limit", lambda: 1e8)
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 3
-    assert capsys.readouterr().err == (
-        "dembound: the address space is limited to 100 MB (ulimit -v), 600 MB are needed\n"
-    )
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are used")
