@@ -3,19 +3,8 @@
 import h5py
 
 from dembound.bar.kind import Bars
-from dembound.bar.scene import BarScene
 from dembound.disks.kind import Disks
-from dembound.disks.scene import DiskScene
-from dembound.kinds import KINDS, kind_of, kind_of_record
-
-
-def test_a_scene_is_of_a_bar_or_of_disks(spalling, bar) -> None:
-    assert [kind().name for kind in KINDS.values()] == list(KINDS) == ["bar", "disks"]
-    for case, kind, scene in ((spalling(), Bars, BarScene), (bar(), Disks, DiskScene)):
-        found = kind_of(case)
-        assert isinstance(found, kind)
-        assert isinstance(found.build(case), scene)
-        assert found.build(case).kind == found.name
+from dembound.kinds import kind_of_record
 
 
 def test_a_record_is_of_a_bar_or_of_disks(spalled_run, small_run, tmp_path) -> None:

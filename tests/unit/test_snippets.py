@@ -8,8 +8,6 @@ import contextlib
 import io
 import re
 import shlex
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -95,30 +93,3 @@ def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) 
         except UsageError as error:
             wrong.append(f"dembound {shlex.join(arguments)}: {error.format_message()}")
     assert not wrong
-
-
-def test_the_case_of_the_first_tunnel_is_the_shipped_one() -> None:
-    (shown,) = (text for text in blocks(ROOT / "docs/start/first_tunnel.md", "toml") if "[run]" in text)
-    assert (ROOT / "cases" / "first_tunnel.toml").read_text().endswith(shown)
-
-
-@pytest.mark.slow
-def test_the_first_wave_runs_as_written(tmp_path, monkeypatch, capsys) -> None:
-    """In an empty folder, block after block; what Python prints is the next block of the page."""
-    monkeypatch.chdir(tmp_path)
-    printed = None
-    for block in BLOCK.finditer((ROOT / "docs/start/first_wave.md").read_text()):
-        if block["name"]:
-            (tmp_path / block["name"]).write_text(block["text"])
-        if block["language"] == "sh":
-            for arguments in commands(block["text"]):
-                subprocess.run([sys.executable, "-m", "dembound", *arguments], check=True)
-        if printed is not None:
-            assert printed == block["text"]
-            printed = None
-        if block["language"] == "python":
-            capsys.readouterr()
-            exec(block["text"], {})
-            printed = capsys.readouterr().out
-    assert {path.name for path in (tmp_path / "results").iterdir()} >= {"bar", "bar_fixed", "random_calibrated"}
-    assert {path.name for path in tmp_path.glob("*.png")} == {"sides.png", "random.png"}
