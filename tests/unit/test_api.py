@@ -2,7 +2,6 @@
 
 import re
 import signal
-import tomllib
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,6 @@ import pytest
 import tomli_w
 
 import dembound
-from dembound import shipped
 from dembound.results.reader import text_of
 from dembound.waves import Cosine
 
@@ -205,17 +203,6 @@ def test_names_that_results_do_not_have_are_answered_with_those_they_have(result
             assert all(arrays.units(name))
     assert results.histories["middle"].units("velocity") == ("m/s", "m/s", "rad/s")
     assert [results.energy_units[name] for name in ("time", "kinetic", "relative_error")] == ["s", "J/m", "1"]
-
-
-def test_a_case_is_shown_in_ten_lines() -> None:
-    for name in shipped.names():
-        case = dembound.load(shipped.folder() / f"{name}.toml")
-        lines = repr(case).splitlines()
-        assert len(lines) <= 10
-        assert max(map(len, lines)) <= 100
-        assert lines[0].startswith(f"{type(case).__name__} {case.name}: {case.title}"[:99])
-        for table in tomllib.loads(case.text):
-            assert table == "title" or re.search(rf"\b{table}\b", repr(case))
 
 
 def test_the_text_of_a_case_is_no_path() -> None:

@@ -22,11 +22,8 @@ from rich.text import Text
 from dembound import cli, starting
 from dembound.boundaries import SIDES
 from dembound.cli.app import ORDER, Side
-from dembound.cli.progress import Lines
 from dembound.kinds import load
 from dembound.machine import Memory
-from dembound.motion.simulation import Simulation
-from dembound.running import plan
 from dembound.version import __version__
 
 
@@ -234,29 +231,6 @@ def test_a_run_tells_its_warnings_what_happened_and_is_named(dembound, written, 
     # where kernels are compiled meanwhile, a line of progress may stand between the warnings
     warned = [line for line in answer.err.splitlines() if "particle-steps/s" not in line]
     assert warned == [f"soft: warning: {warning}" for warning in found["warnings"]]
-
-
-def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) -> None:
-    planned = plan(bar())
-    simulation = Simulation(planned.scene, planned.time_step)
-    clock = [100.0]
-    lines = Lines("bar", lambda: clock[0])
-    lines.warned("wave.pulse: is odd")
-    for now, steps, compiled in ((100.0, 1, 0.0), (109.9, 9, 0.0), (112.0, 11, 2.0), (121.9, 5, 0.0), (122.0, 0, 0.0)):
-        clock[0] = now
-        simulation.clock.seconds["compile"] += compiled
-        simulation.advance(steps)
-        lines.running(simulation, 1234)
-
-    # the first step only starts the clock; 20 steps of 40 disks in 12 s, 2 of them spent on compiling, then 5 in 10 s
-    assert capsys.readouterr().err.splitlines() == [
-        "bar: warning: wave.pulse: is odd",
-        *(
-            f"bar: {done} of 1,234 steps, {done * planned.time_step:.4g} s simulated, {rate} M particle-steps/s, "
-            f"about {left} s left"
-            for done, rate, left in ((21, "8e-05", 610), (26, "2e-05", 2400))
-        ),
-    ]
 
 
 def test_cases_are_run_one_after_the_other_and_differences_told(dembound, written, monkeypatch, tmp_path) -> None:
@@ -625,29 +599,6 @@ def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, titles
     assert "21.54" in full.out  # ½ · 2620 · 2740 · 6 Pa
     assert full.out.splitlines()[-1] == "wrote gauge.png"
     assert (tmp_path / "gauge.png").read_bytes().startswith(PNG)
-
-
-def test_gauges_that_tell_nothing_are_bad_input(dembound, felt, tmp_path) -> None:
-    np.savetxt("gauge.txt", np.column_stack(felt()))
-    for arguments, said in (
-        (
-            ["gauge.txt"],
-            "--position: is missing, must be the gauge's place (m) from the loaded end\n"
-            "--length: is missing, must be that of the bar (m)\n",
-        ),
-        (
-            [*PLACED, "--attenuation", -1, "--wave-speed", 0, "--spall", 1],
-            "--spall: is 1 m, must be above 0 and below the length, 0.99 m\n"
-            "--wave-speed: is 0 m/s, must be finite and above 0\n"
-            "--attenuation: is -1 1/m, must be finite and not below 0\n",
-        ),
-        (
-            [*PLACED, "--spall", 0.9, "--pulse-end", 0],
-            "--pulse-end: is 0 s, must be after 0.000259 s, when the pulse is half risen\n",
-        ),
-    ):
-        assert dembound("gauge", *arguments, "-o", "gauge.png") == (2, "", said)
-    assert files(tmp_path) == {"gauge.txt"}
 
 
 def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:

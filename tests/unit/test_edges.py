@@ -9,7 +9,7 @@ from dembound.disks.scene import build
 from dembound.disks.supports import forces_of
 from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
 from dembound.kinds import loads
-from dembound.places import is_within, spans_all
+from dembound.places import is_within
 
 COUNT = 14
 CENTRES = np.stack(np.meshgrid(*2 * [np.arange(1, 2 * COUNT, 2)]), axis=-1).reshape(-1, 2)
@@ -131,13 +131,6 @@ def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) 
         np.testing.assert_array_equal(
             held, np.flatnonzero(is_within((ends[0], 0.0, ends[1], 100.0), along, 60.0 * radius))
         )
-
-
-def test_a_region_spans_a_scene_also_where_its_end_is_rounded() -> None:
-    whole = (0.1, 0.0, 0.1 + 0.2, 1.0)
-    assert spans_all((0.1, 0.2, 0.3, 0.4), whole, 0)
-    assert not spans_all((0.1, 0.2, 0.3, 0.4), whole, 1)
-    assert not spans_all((0.1, 0.2, 0.299, 0.4), whole, 0)
 
 
 CASE = """

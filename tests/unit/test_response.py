@@ -1,4 +1,4 @@
-"""Response spectra beside closed forms and another program."""
+"""Response spectra, Fourier spectra and transfer functions beside closed forms and another program."""
 
 import numpy as np
 import pytest

@@ -34,11 +34,6 @@ def test_bounds_are_shares_or_per_cent_and_names_have_them() -> None:
             bound_of(text)
 
 
-def test_keep_without_error_is_refused(dembound, case) -> None:
-    answer = dembound("run", case, "--keep", "packing")
-    assert (answer.code, answer.err) == (2, "--keep: needs --error, without which nothing is changed\n")
-
-
 def test_a_run_has_the_chosen_case_and_its_estimate(dembound, case, tmp_path) -> None:
     answer = dembound("run", case, "--error", "5%", "--keep", "packing", "--set", "output.pictures=false")
     assert answer.code == 0

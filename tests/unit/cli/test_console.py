@@ -1,4 +1,4 @@
-"""Texts are printed unchanged: without markup, emoji codes and commands to the terminal."""
+"""Texts are printed unchanged: without markup and commands to the terminal; compiling is reported once."""
 
 import io
 import os
@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from rich.table import Table
 
+from dembound.cli.compiling import MESSAGE
 from dembound.cli.console import PlainConsole, prepare_streams
 from dembound.errors import HIDDEN, visible
 
@@ -79,7 +80,23 @@ def test_text_that_reorders_itself_does_not_reach_the_terminal() -> None:
     assert visible("a\u202eb\u200bc") == "a\\u202eb\\u200bc"
 
 
-def test_pictures_are_drawn_whatever_backend_is_asked_for() -> None:
-    code = command("cases").replace("main()", "\ntry: main()\nexcept SystemExit: pass\nimport dembound.plot.style")
-    done = ended(code, env=os.environ | {"MPLBACKEND": "nosuch"}, stdout=subprocess.DEVNULL)
-    assert (done.returncode, done.stderr) == (0, "")
+COMPUTE = """
+import numpy as np
+from dembound.cli.app import prepare_computing
+prepare_computing(None)
+prepare_computing(None)
+from dembound.kernels.common import column_sum, largest
+column_sum(np.ones((2, 2)), 0)
+largest(np.ones(2))
+"""
+
+
+def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
+    def printed() -> str:
+        kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        return subprocess.run(
+            [sys.executable, "-c", COMPUTE], capture_output=True, text=True, check=True, env=kept
+        ).stderr
+
+    assert printed() == f"{MESSAGE}\n"
+    assert printed() == ""  # loaded

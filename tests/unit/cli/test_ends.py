@@ -1,6 +1,7 @@
-"""However a command ends, it prints one line on its partial results and remedies, and has its exit code."""
+"""What run prints before and after a run, and how any command ends: one line with remedies, and its exit code."""
 
 import errno
+import json
 import signal
 import subprocess
 import sys
@@ -14,12 +15,11 @@ from dembound.running import job
 
 IMPORTED = """
 import os, signal, sys
-signal.signal(signal.SIGHUP, signal.{hangups})
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may be run where it is ignored
 class Signals:
     def find_spec(self, name, path=None, target=None):
         if name == "numpy":
-            os.kill(os.getpid(), signal.{number})
+            os.kill(os.getpid(), signal.SIGINT)
 sys.meta_path.insert(0, Signals())
 sys.argv = ["dembound", "dispersion", "--horizon", "0"]
 from dembound.__main__ import main
@@ -28,20 +28,9 @@ main()
 """A command that receives a signal as it begins to import numpy."""
 
 
-def ended(number: str, hangups: str = "SIG_DFL") -> tuple[int, str]:
-    program = IMPORTED.format(number=number, hangups=hangups)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    return done.returncode, done.stderr
-
-
 def test_a_signal_during_imports_has_its_line_and_code() -> None:
-    assert ended("SIGINT") == (128 + signal.SIGINT, "dembound: stopped\n")
-
-
-def test_a_hangup_that_is_to_be_ignored_is_ignored() -> None:
-    code, said = ended("SIGHUP", "SIG_IGN")  # as by nohup
-    assert code == 2
-    assert "--horizon" in said
+    done = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "dembound: stopped\n")
 
 
 def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypatch) -> None:
@@ -160,3 +149,33 @@ def test_a_link_to_nothing_and_a_folder_that_is_gone_are_said(dembound, written,
     (tmp_path / "gone").rmdir()
     answer = dembound("new")
     assert (answer.code, answer.err) == (5, "the current folder has been deleted; change to another one\n")
+
+
+def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp_path) -> None:
+    answer = dembound("run", written())
+    found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())["monitors"]["middle"]
+    assert answer.out.splitlines()[1:] == [
+        "  monitor  component  peak (mm/s)  at (ms)",
+        f"  middle         v_x  {1e3 * found['peak_velocity']:>11.3g}  {1e3 * found['peak_time']:>7.3g}",
+        "bar: results in results/bar",
+        "  run.h5, summary.json, paraview/",
+        "  next: dembound report results/bar",
+        "        dembound estimate results/bar",
+    ]
+
+
+def test_nothing_is_replaced_unseen(dembound, written, tmp_path) -> None:
+    path = written()
+
+    def said(*words: str) -> list[str]:
+        lines = dembound("run", path, *words).err.splitlines()
+        return [line for line in lines if "replaces" in line or "anew" in line]
+
+    then = "when it is complete; to keep both, stop it and give --name or --output"
+    assert said() == []
+    assert said() == [f"bar: replaces results/bar (of the same case) {then}"]
+    changed = ("--set", "run.safety=0.5", "--set", "run.duration=0.02")
+    assert said(*changed) == [f"bar: replaces results/bar (with another run.duration, run.safety) {then}"]
+    (tmp_path / "results" / "bar").rename(tmp_path / "results" / "bar.partial")
+    stopped = "the stopped run in results/bar.partial, which dembound resume would have continued"
+    assert said() == [f"bar: begins anew, without {stopped}"]

@@ -98,16 +98,3 @@ def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound,
     material = loads(written).material
     assert material.pb_ten == pytest.approx(20e6 / 0.3, rel=1e-3)
     assert tested[-1].name == f"tension_{material.pb_ten:.4g}_{material.pb_coh:.4g}"  # what is written was tested
-
-
-def test_options_of_strengths_and_of_tables_do_not_mix(dembound) -> None:
-    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
-
-    for options, message in (
-        (["--damp", "0", "--seeds", "2"], "--seeds, --damp: for tests of samples, give --ucs or --tension"),
-        (["--ucs", "1e6", "--json"], "--json: is for the tables without a run"),
-        (["--ucs", "1e6", "-p", "2", "--scheduler", "tcp://a:1"], "--processes: is for this machine"),
-    ):
-        answer = dembound("material", "rock.toml", *options)
-        assert answer.code == 2
-        assert message in answer.err

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from dembound.interrupts import Stopped
 from dembound.studies.sweep import study
 from dembound.studies.sweep.perform import Outcome
 
@@ -87,13 +86,3 @@ def test_sweeps_of_nothing_are_bad_input(dembound, rod) -> None:
         assert done.code == 2
         assert said in done.err
     assert not Path("results").exists()
-
-
-def test_a_signal_ends_it_with_its_exit_code(dembound, rod, monkeypatch) -> None:
-    def stopped(*_):
-        raise Stopped(15)
-
-    monkeypatch.setattr(study, "sweep", stopped)
-    rod()
-    done = dembound("sweep", "rod.toml", "--vary", "run.courant=0.5")
-    assert (done.code, done.err) == (143, "rod: stopped; the same command continues what is left\n")

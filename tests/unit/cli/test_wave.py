@@ -55,13 +55,6 @@ def test_a_component_is_cut_scaled_and_named(dembound, recorded, tmp_path) -> No
     assert (times[0], times[-1]) == pytest.approx((0.0, 20.0))
 
 
-def test_raw_does_nothing_and_warns_of_ends_in_motion(dembound, recorded) -> None:
-    answer = dembound("wave", recorded, "--raw", "--component", "EW")
-    assert answer.code == 0
-    assert not any(words in answer.out for words in ("baseline:", "taper:", "filter:"))
-    assert "warning: EW: ends with -7.8" in answer.err  # −0.02 g over 40 s
-
-
 def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tmp_path) -> None:
     for options, problem in (
         (("--component", "UD"), "--component: is UD, must be one of NS, EW"),

@@ -84,19 +84,6 @@ def test_gauges_beside_the_bar_are_refused(text, monkeypatch, given, said):
     assert caught.value.problems == said
 
 
-def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
-    (tmp_path / "short.txt").write_text("0 1\n1 2\n")
-    (tmp_path / "wide.txt").write_text("0 1 2\n1 2 3\n")
-    for path, said in (
-        (tmp_path / "absent.txt", "no file"),
-        (tmp_path / "wide.txt", r"--column: is missing, \S+ has 3 columns; must be a number from 1 to 3"),
-        (tmp_path / "short.txt", "contains 2 samples, must contain three or more"),
-        (small_run, "contains no history of stress between the ends of a bar"),
-    ):
-        with pytest.raises(CaseError, match=said):
-            read_gauge(path, position=0.6, length=0.99)
-
-
 def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
     np.savetxt(tmp_path / "end.txt", np.column_stack([np.arange(400), VELOCITY]))
     time, velocity = read_free_end(record, "end")

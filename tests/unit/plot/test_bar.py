@@ -6,7 +6,7 @@ import pytest
 from matplotlib.collections import PathCollection
 
 from dembound.errors import CaseError
-from dembound.plot.bar import FEWEST, plot_bar, plot_bar_field
+from dembound.plot.bar import plot_bar, plot_bar_field
 
 
 @pytest.fixture
@@ -25,13 +25,6 @@ def changed(spalled_run, copied):
     """A copy of the record, to change it."""
     with copied(spalled_run) as file:
         yield file
-
-
-def keep(file: h5py.File, count: int) -> None:
-    """Leave only the last snapshots."""
-    for number in list(file["snapshots"])[: len(file["snapshots"]) - count]:
-        del file["snapshots"][number]
-    file.flush()
 
 
 def picture_of(panel):
@@ -87,19 +80,6 @@ def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed, run
     np.testing.assert_array_equal(drawn(damage, 0.5, 0.89), drawn(damage, 0.5, 0.6))
     np.testing.assert_array_equal(drawn(damage, 0.5, 0.91), drawn(damage, 0.5, 1.4))
     assert np.any(drawn(damage, 0.5, 0.89) != drawn(damage, 0.5, 0.91))
-
-
-def test_of_few_snapshots_there_is_a_line_for_each_and_the_last_alone_is_enough(changed, run, recorded):
-    keep(changed, FEWEST)
-    assert plot_bar(run).axes[0].images
-    keep(changed, FEWEST - 1)
-    stress, damage = plot_bar(run).axes
-    for panel, name, scale in ((stress, "stress", 1e6), (damage, "damage", 1.0)):
-        lines = [line for line in panel.lines if line.get_label().startswith("t = ")]
-        np.testing.assert_array_equal([line.get_ydata() for line in lines], recorded[name][3:] / scale)
-    keep(changed, 1)
-    stress, damage = plot_bar(run).axes
-    np.testing.assert_array_equal(stress.lines[0].get_ydata(), recorded["stress"][-1] / 1e6)
 
 
 @pytest.mark.parametrize(

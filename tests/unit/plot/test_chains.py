@@ -2,11 +2,9 @@
 
 import h5py
 import numpy as np
-import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_hex
 
-from dembound.errors import CaseError
 from dembound.plot.chains import PULL, PUSH, plot_chains
 
 
@@ -48,12 +46,3 @@ def test_lines_lead_from_disk_to_disk_with_width_and_colour_of_their_force(tmp_p
     assert widths[0] > widths[2]
     assert [to_hex(lines.get_colors()[k]) for k in at] == [colour.lower() for colour in (PUSH, PULL, PUSH)]
     np.testing.assert_allclose(disks.get_offsets(), [[0.52 + number, 0.5] for number in range(4)])
-
-
-def test_any_scene_is_drawn_and_one_without_contacts_is_refused(cracked_run, small_run, tmp_path):
-    assert len(of_type(plot_chains(cracked_run), LineCollection).get_segments()) > 50
-    for number, forces in enumerate(([], [0.0])):  # without any contact, and at rest
-        figure = plot_chains(row(tmp_path / f"{number}.h5", forces))
-        assert len(of_type(figure, LineCollection).get_segments()) == len(forces)
-    with pytest.raises(CaseError, match=r"holds no contacts; runs with output\.contacts = true do"):
-        plot_chains(small_run)

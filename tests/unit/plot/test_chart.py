@@ -60,13 +60,6 @@ def test_reference_others_and_failures_are_listed_and_exact_results_drawn_at_the
     assert point.get_ydata()[0] == LEAST
 
 
-def test_monitors_elsewhere_are_marked_with_the_largest_distance(chart) -> None:
-    choices = [("fine", 0.01, 3.0), ("coarse", 0.2, 0.5), ("coarser", 0.3, 0.4)]
-    side = plot_chart(chart(choices, front=[0, 1], apart=0.25)).axes[1]  # 0, 0.25 and 0.5 m
-    assert [text.split(":")[0] for text in texts(side)[1:3]] == ["coarse†", "fine"]
-    assert "†" not in "".join(texts(plot_chart(chart(choices)).axes[1]))
-
-
 def test_the_sentence_stays_below_any_title(chart, tmp_path) -> None:
     path = chart([("fine", 0.01, 3.0)])
     assert plot_chart(path).get_suptitle() == "A rod\ncheapest: none"

@@ -1,4 +1,4 @@
-"""Outlines of holes are lines within a tenth of a disk of those of the case, in scenes, movies and boxes."""
+"""Outlines of holes are lines within a tenth of a disk of those of the case; means are those of cells."""
 
 import h5py
 import numpy as np
@@ -18,26 +18,13 @@ from dembound.results.recorder import Recorder
 RADIUS = 0.5
 
 HOLES = {
-    "horseshoe": {
-        "type": "polygon",
-        "points": [[8.0, 4.0], [15.0, 4.0], [15.0, 7.0], [13.5, 9.3], [11.5, 10.0], [9.5, 9.3], [8.0, 7.0]],
-    },
     "oval": {"type": "ellipse", "centre": [12.0, 8.0], "semi_axes": [6.0, 2.5], "angle": 25.0},
     "circle": {"type": "circle", "centre": [12.0, 8.0], "radius": 3.7},
-    "drift": {"type": "rectangle", "corners": [8.2, 5.1, 14.9, 9.9]},
     "canyon": {"type": "polygon", "points": [[6.0, 19.0], [10.0, 9.0], [14.0, 9.0], [18.0, 19.0]]},
     "floor": {"type": "polygon", "points": [[12.0, 10.0], [30.0, 10.0], [30.0, 19.0], [9.0, 19.0]]},
 }
 
 ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")}}
-
-
-SHAPES = [(name, name == "canyon") for name in HOLES] + [("floor", True)]
-"""Names of holes, with whether a continuum is around the disks."""
-COARSE = [("canyon", True), ("floor", False)]
-"""Cases also drawn with means in place of disks; the others are slow."""
-WITH_DISKS = [("circle", False), ("canyon", True)]
-"""Cases drawn with disks; the others are slow."""
 
 
 def hollow_run(path, name, in_a_box):
@@ -63,8 +50,7 @@ def away(points, line):
 
 @pytest.mark.parametrize(
     ("name", "in_a_box", "dots"),
-    [pytest.param(*shape, 150, marks=[] if shape in WITH_DISKS else pytest.mark.slow) for shape in SHAPES]
-    + [pytest.param(*shape, 12, marks=[] if shape in COARSE else pytest.mark.slow) for shape in SHAPES],
+    [("circle", False, 150), ("canyon", True, 150), ("floor", False, 12), ("oval", True, 12)],
 )
 def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):
     """In a picture and in a movie of so many dots per inch."""

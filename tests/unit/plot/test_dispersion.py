@@ -22,15 +22,3 @@ def test_lines_are_the_lattices_own():
         np.testing.assert_allclose(
             panel.lines[0].get_ydata(), speed(2.0 * np.pi / (0.01 * CELLS)) / 2500.0, rtol=1e-12, atol=1e-12
         )
-
-
-def test_simulated_points_stand_at_their_frequencies_and_phase_velocities():
-    wavenumber = np.array([100.0, 200.0])
-    figure = plot_dispersion([COARSE, FINE], [(wavenumber, 2400.0 * wavenumber), (np.zeros(0), np.zeros(0))])
-    left, middle, _ = figure.axes
-    points = next(line for line in left.lines if line.get_label() == "simulated")
-    np.testing.assert_array_equal(points.get_xdata(), wavenumber)
-    np.testing.assert_allclose(points.get_ydata(), 2.4 * wavenumber / (2.0 * np.pi), rtol=1e-14)
-    speeds = next(line for line in middle.lines if line.get_linestyle() == "None")
-    np.testing.assert_allclose(speeds.get_xdata(), 2.0 * np.pi / (0.01 * wavenumber), rtol=1e-14)
-    np.testing.assert_allclose(speeds.get_ydata(), 0.96, rtol=1e-14)

@@ -4,7 +4,6 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
 from dembound.plot.energy import COLUMNS, NEGLIGIBLE, OF_STEPS, plot_energy
 from dembound.results.datasets import datasets_of
 
@@ -80,17 +79,3 @@ def test_the_unit_of_the_axis_has_the_prefix(cracked_run, run, copied, largest, 
     upper = plot_energy(run).axes[0]
     assert upper.get_ylabel() == f"energy per metre of thickness ({joule}/m)"
     assert [line.get_ydata()[-1] for line in upper.lines] == pytest.approx([drawn] if largest else [], rel=1e-12)
-
-
-def test_a_bar_keeps_its_books_in_its_own_words_and_without_entries_there_is_no_picture(
-    spalled_run, small_run, run, copied
-):
-    with copied(spalled_run) as file:
-        fill(file)
-    upper = plot_energy(run).axes[0]
-    assert upper.get_ylabel() == "energy (J)"
-    labels = {line.get_label() for line in upper.lines}
-    own = ("stored: elastic, local springs", "stored: elastic, peridynamic bonds", "dissipated: attenuation")
-    assert {*own, "supplied: change of method"} <= labels
-    with pytest.raises(CaseError, match="no entries in its energy ledger"):
-        plot_energy(small_run)

@@ -1,4 +1,4 @@
-"""A gauge's history and the stress beside the free end are drawn in MPa."""
+"""Gauges in MPa, and split Hopkinson tests in µε, MPa and per cent."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Monitors show their histories."""
+"""Histories of monitors, record sections and hodographs."""
 
 import h5py
 import numpy as np

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from matplotlib.collections import EllipseCollection, PathCollection, TriMesh
+from matplotlib.collections import EllipseCollection, PathCollection
 
 from dembound.errors import CaseError
 from dembound.plot.moving import MovingBar, MovingScene, TimeLine
@@ -57,18 +57,6 @@ def test_disks_and_cracks_are_moved_by_their_exaggerated_displacements(cracked_r
         if chosen.any():
             mean = displacement[cracks["particles"][chosen]].mean(axis=1)
             np.testing.assert_allclose(marks[label], cracks["position"][chosen] + mean, rtol=1e-12)
-
-
-def test_the_cells_of_a_continuum_move_with_its_nodes(surrounded_run):
-    still, moved = MovingScene(surrounded_run), MovingScene(surrounded_run, exaggerate=100.0)
-    for scene in (still, moved):
-        scene.frame(0, 300)
-    corners = [one(scene.figure.axes[0], TriMesh)._triangulation for scene in (still, moved)]
-    with h5py.File(surrounded_run) as file:
-        cells = still._disks.continuum.nodes.ravel()
-        displacement = file["snapshots/0000/continuum/displacement"][:][cells]
-    np.testing.assert_allclose(corners[1].x - corners[0].x, 100.0 * displacement[:, 0], atol=1e-10)
-    np.testing.assert_allclose(corners[1].y - corners[0].y, 100.0 * displacement[:, 1], atol=1e-10)
 
 
 def test_a_bar_is_drawn_along_itself_with_the_bonds_broken_so_far(spalled_run):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.plot.reflection import LEAST, Curves, plot_reflection, plot_types
+from dembound.plot.reflection import LEAST, Curves, plot_reflection
 
 ANGLES, FREQUENCIES = np.array([0.0, 30.0, 60.0]), np.array([1.0, 3.0])
 
@@ -26,12 +26,3 @@ def test_means_and_their_range_are_drawn_against_angle_and_single_angles_against
     below = {line.get_label(): line.get_ydata() for line in below_p.get_lines()}
     np.testing.assert_allclose(below["in all at 60°"], [0.3, 0.6])
     np.testing.assert_allclose(below["in all at 0°"], [LEAST, 0.3])
-
-
-def test_types_are_drawn_against_frequency_before_the_spectrum_of_the_wave() -> None:
-    shares = np.array([[0.1, 0.2, 0.0], [0.2, np.nan, 0.4]])
-    types = {"viscous": (ANGLES, shares), "outside": (ANGLES[::2], shares[:, ::2])}
-    figure = plot_types(FREQUENCIES, {"S": types}, {"S": np.array([1.0, 0.1])}, "title")
-    panel = figure.axes[0]
-    lines = {line.get_label(): line for line in panel.get_lines()}
-    np.testing.assert_allclose(lines["outside, 60°"].get_ydata(), [LEAST, 0.4])

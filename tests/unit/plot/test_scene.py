@@ -113,19 +113,6 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke_above_the_disks(crack
             assert len(expected) > 0
 
 
-def test_twins_are_hollow_marks_without_names(small_run, run, copied):
-    with copied(small_run) as file:
-        file["snapshots/0000/velocity"][3, 1] = -7.0
-        file.copy("histories/front", file["histories"], "front.free_field")
-        file.copy("histories/back", file["histories"], "back.free_field")  # where its monitor is: not shown
-        place = file["histories/front"].attrs["position"] - [0.5, 0.0]
-        file["histories/front.free_field"].attrs["position"] = place
-    panel, bar = plot_scene(run).axes
-    assert bar.get_ylabel() == "velocity along y (m/s)"  # which moves most in the run
-    (twins,) = [each for each in panel.collections if each.get_label() == "its twin in the free field"]
-    np.testing.assert_array_equal(twins.get_offsets(), [place])
-
-
 def test_small_disks_give_way_to_their_mean(run):
     # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 4 that a disk needs
     panel = plot_scene(block(run, 600, 100, lambda x: x)).axes[0]
@@ -154,11 +141,3 @@ def test_a_long_scene_shows_the_pulse_pass_and_leave_in_one_scale(run):
     left, right = part.get_xlim()
     # half the largest motion is 50 √ln 2 = 41.6 m from the crest
     assert abs(abs(0.5 * (left + right) - 500.0) - 41.6) < 1.0
-
-
-def test_a_line_stands_between_the_column_and_the_body_also_at_rest(run):
-    with h5py.File(block(run, 6, 4, np.zeros_like), "r+") as file:
-        file.attrs["column"] = 8
-    panel = plot_scene(run).axes[0]
-    (line,) = panel.lines
-    assert list(line.get_xdata()) == [2.0, 2.0]  # two columns of four disks, each 1 m wide

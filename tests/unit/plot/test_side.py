@@ -1,4 +1,4 @@
-"""Stress and displacement of a side as a whole, read from a record and drawn."""
+"""Sides of records: stress and displacement of the whole, diameters and peaks of their disks."""
 
 import h5py
 import numpy as np
@@ -80,19 +80,6 @@ def test_diameters_and_peaks_stand_along_the_side(small_run, side, axis):
         largest = np.maximum(-group["peak_velocity"][:, 0, 0], group["peak_velocity"][:, 0, 1])
         np.testing.assert_array_equal(peaks.get_xdata(), group["position"][:, axis])
         np.testing.assert_array_equal(peaks.get_ydata(), largest)
-
-
-def test_particles_stand_in_their_order_and_those_of_a_column_apart(small_run, run, copied):
-    with copied(small_run) as file:
-        file.attrs["column"] = 10
-        group = file["boundaries/bottom"]
-        for name in ("particle", "position", "diameter", "peak_velocity"):
-            group[name][:] = group[name][:][::-1]
-        positions, column = group["position"][:, 0][::-1], group["particle"][:][::-1] < 10
-    for panel in plot_boundary([run], "bottom").axes:
-        body, apart = panel.lines
-        np.testing.assert_array_equal(body.get_xdata(), positions[~column])
-        np.testing.assert_array_equal(apart.get_xdata(), positions[column])
 
 
 def test_what_is_no_side_is_refused(small_run, spalled_run):

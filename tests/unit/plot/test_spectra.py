@@ -126,22 +126,3 @@ def test_the_spectrum_is_that_of_the_pulse(tmp_path, odd):
     (line,) = panel.lines
     frequency, amplitude = line.get_data()
     np.testing.assert_allclose(amplitude, hann(frequency, HEIGHT), atol=3e-5 * 0.5 * HEIGHT * LENGTH)
-
-
-def test_axes_end_where_all_spectra_are_below_a_hundredth_of_the_largest(tmp_path):
-    weak = pulses_at(tmp_path / "a.h5", "weak", {"P": 0.005 * HEIGHT, "Q": 0.5 * HEIGHT})
-    strong = pulses_at(tmp_path / "b.h5", "strong", {"P": HEIGHT})
-    end = plot_spectra([weak, strong]).axes[0].get_xlim()[1]
-    peak = 0.5 * HEIGHT * LENGTH
-    assert hann(end, HEIGHT) == pytest.approx(0.01 * peak, rel=0.2)
-
-
-def test_the_component_can_be_chosen_and_a_monitor_at_rest_has_an_empty_panel(tmp_path):
-    run = pulses_at(tmp_path / "run.h5", "pulse", {"P": HEIGHT, "Q": 0.0})
-    panels = [plot_spectra([run], component).axes for component in (None, "x", "y")]
-    np.testing.assert_allclose(
-        [of.lines[0].get_ydata()[0] for of, _ in panels], 0.5 * LENGTH * HEIGHT * np.array([1.0, 1.0, 0.1]), rtol=1e-4
-    )
-    assert [len(rest.lines) for _, rest in panels] == [0, 0, 0]
-    with pytest.raises(CaseError, match="has no monitors to show"):
-        plot_spectra([pulses_at(tmp_path / "none.h5", "none", {})])

@@ -1,23 +1,12 @@
-"""Energies of noise against steps."""
+"""Passes of a calibration."""
 
 import h5py
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.stability import LEAST, Line, plot_convergence, plot_stability
+from dembound.plot.stability import plot_convergence
 from dembound.results.datasets import describe
-
-
-def test_energies_stand_against_steps_on_a_log_axis() -> None:
-    short = [Line("below", 0, [0, 10, 20], [1.0, 0.5, 0.6], dashed=True), Line("above", 0, [0, 10], [1.0, np.inf])]
-    long = [Line("own", 0, [0, 1000], [1.0, -1.0])]
-    left, right = plot_stability(short, long, "noise").axes
-
-    np.testing.assert_array_equal(left.lines[0].get_ydata(), [1.0, 0.5, 0.6])
-    np.testing.assert_array_equal(right.lines[0].get_ydata(), [1.0, LEAST])
-    assert (left.get_yscale(), right.get_yscale()) == ("log", "log")
-
 
 BETA = [0.5, 0.618, 0.7]
 OUTGOING = [0.618, 0.567, 0.536]

@@ -1,9 +1,11 @@
-"""Histories in the units they are shown in."""
+"""Histories in the units they are shown in, and moduli read off the curve of a laboratory test."""
 
 import h5py
 import numpy as np
+import pytest
 
-from dembound.results.histories import entries, read_bands, read_histories
+from dembound.results.histories import read_histories
+from dembound.results.recording import LoadingCurve
 
 
 def test_accelerations_are_central_differences_of_the_velocity(small_run):
@@ -16,34 +18,37 @@ def test_accelerations_are_central_differences_of_the_velocity(small_run):
     np.testing.assert_allclose(history.values[0], (velocity[1] - velocity[0]) / (time[1] - time[0]))
 
 
-def test_bands_are_read_where_there_are_some(tmp_path):
-    record = tmp_path / "run.h5"
-    assert read_bands(record, "velocity") == {}
-    with h5py.File(tmp_path / "estimate.h5", "w") as file:
-        file["histories/a/time"] = [0.0, 1.0]
-        file["histories/a/velocity/band"] = [[1.0, 2.0], [3.0, 4.0]]
-        file["histories/b/time"] = [0.0, 1.0]
-        file["histories/b/velocity/band"] = [[5.0, 6.0], [7.0, 8.0]]
-        file["histories/b/velocity/corrected"] = [[9.0, 9.0], [9.0, 9.0]]
-    found = read_bands(record, "velocity")
-    np.testing.assert_array_equal(found["a"].half_width, [[1.0, 2.0], [3.0, 4.0]])
-    assert found["a"].corrected is None
-    np.testing.assert_array_equal(found["b"].corrected, 9.0)
-    assert read_bands(record, "acceleration") == {}
+TIME = np.linspace(0.0, 3.0, 301)
+RATE = 0.002
 
 
-def test_entries_of_a_summary_as_texts():
-    estimate = {
-        "monitors": {
-            "a": {"velocity": {"of": {"rock": {"value": 0.05, "upper": 0.07}}, "by": {"grid": 0.03, "sides": 0.04}}}
-        },
-        "causes": {"sides": {"how": "companion", "words": "from a pair"}},
-        "notes": ["a note"],
-        "not_estimated": ["a gap"],
-    }
-    assert dict(entries(estimate)) == {
-        "a, velocity": "of the rock 5 %, at most 7 % (sides 4 %, grid 3 %)",
-        "sides": "companion, from a pair",
-        "notes": "a note",
-        "not estimated": "a gap",
-    }
+def curve(pressure: float = 0.0, crack_time: tuple[float, ...] = (0.8, 1.5, 2.5)) -> LoadingCurve:
+    """Straight to the peak at 2 s, after which the stress falls; a stiffer foot up to a tenth of the peak."""
+    strain = RATE * TIME
+    stress = np.interp(TIME, [0.0, 0.1, 2.0, 3.0], [0.0, 4e6, 40e6, 10e6])
+    times = TIME[::10]
+    return LoadingCurve(
+        kind="biaxial" if pressure else "ucs",
+        time=TIME,
+        stress=stress + pressure,
+        pressure=pressure,
+        strain=1.1 * strain,  # platens stiffen or soften the ends
+        gauge_time=times,
+        axial=RATE * times,
+        lateral=0.3 * RATE * times,
+        crack_time=np.array(crack_time),
+        crack_shear=np.array([False, True, False])[: len(crack_time)],
+    )
+
+
+@pytest.mark.parametrize("pressure", [0.0, 5e6])
+def test_moduli_are_slopes_of_the_middle_between_shares_of_the_peak(pressure: float) -> None:
+    found = curve(pressure)
+    young, poisson = found.elastic(0.15, 0.9)
+
+    assert young == pytest.approx(36e6 / (1.9 * RATE), rel=1e-9)
+    assert poisson == pytest.approx(0.3, rel=1e-9)
+    assert found.strength == pytest.approx(40e6 + pressure)
+    assert found.first_crack == pytest.approx(4e6 + 36e6 * 0.7 / 1.9 + pressure)
+    assert found.rate == pytest.approx(1.1 * RATE)
+    assert found.has_peak

@@ -10,7 +10,6 @@ from dembound.results.reader import (
     cracks_until,
     energy_of,
     history_of,
-    laws_of,
     open_record,
     side_energies_of,
     snapshot_of,
@@ -100,15 +99,6 @@ def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):
             np.testing.assert_array_equal(found[name], values[:count])
 
 
-def test_laws_come_with_the_times_they_began_at(small_run, cracked_run):
-    with open_record(small_run) as file:
-        assert laws_of(file) == [("elastic", 0.0)]
-    with open_record(cracked_run) as file:
-        first, (name, time) = laws_of(file)
-        assert (first, name) == (("elastic", 0.0), "linearpbond")
-        assert 0.002 <= time <= file["cracks/time"][0]  # no wave is sent before
-
-
 def ledger(path, **columns):
     with h5py.File(path, "w") as file:
         for name, values in columns.items():
@@ -128,15 +118,3 @@ def test_the_error_of_the_ledger_is_relative_to_all_that_was_supplied(tmp_path):
         ledger(path, **columns)
         with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):
             energy_of(file)
-
-
-def test_parts_that_results_lack_are_named(tmp_path) -> None:
-    with h5py.File(tmp_path / "run.h5", "w") as file:
-        file["snapshots/0000/velocity"] = np.zeros((2, 3))
-    results = Results(tmp_path)
-    assert results.snapshots[-1]["velocity"].shape == results.snapshots[:1][0]["velocity"].shape == (2, 3)
-    assert len(list(results.snapshots)) == 1
-    with pytest.raises(IndexError, match=r"run\.h5: has no snapshot 99, they are 0 to 0$"):
-        results.snapshots[99]
-    with pytest.raises(TypeError, match=r"results have no \['x'\]; their parts are attributes: histories, "):
-        results["x"]

@@ -233,15 +233,6 @@ def test_what_was_written_can_be_read_if_the_process_dies(
         assert len(file["snapshots"]) == (samples > 0)
 
 
-def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
-    with h5py.File(spalled_run) as file:
-        about, particles = plain(file.attrs), file["particles"]
-        assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
-        assert (about["wave_speed"], about["attenuation"]) == (1000.0, 0.0)
-        np.testing.assert_allclose(particles["volume"], [0.0125, *39 * [0.025], 0.0125], rtol=1e-15)
-        assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
-
-
 def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
     scene = build_bar(spalling())
     simulation = Simulation(scene, 2.5e-5, np.array([21]))

@@ -1,5 +1,6 @@
-"""Files that are not built like a record are refused by what is wrong with them; nothing that they name is followed."""
+"""Files that are not built like a record, or are damaged, are refused by what is wrong with them."""
 
+import errno
 import json
 import time
 import zlib
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.datasets import require_places
+from dembound.results.datasets import damage_in_words, require_places
 from dembound.results.reader import history_of, open_record, snapshots_of
 from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS
 from dembound.results.summary import read_summary
@@ -207,3 +208,41 @@ def test_particles_of_no_size_and_monitors_of_none_are_refused(three_particles) 
             file["particles/radius"][1] = radius
             with pytest.raises(RecordError, match=f"particles/radius is {radius:g} in row 1"):
                 require_places(file)
+
+
+VELOCITY = "snapshots/0001/velocity"
+
+
+def refused(tmp_path, content: bytes) -> str:
+    """The message for a record of these bytes, of which one dataset is read, without the path."""
+    path = tmp_path / "run.h5"
+    path.write_bytes(content)
+    with pytest.raises(RecordError) as error, open_record(path) as file:
+        file[VELOCITY][()]
+    assert error.value.exit_code == 5
+    (line,) = str(error.value).splitlines()
+    return line.removeprefix(f"{path}: ")
+
+
+def with_byte_changed(content: bytes, place: int) -> bytes:
+    return content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
+
+
+def test_the_dataset_is_named_whose_checksum_does_not_fit(small_run, tmp_path):
+    with h5py.File(small_run) as file:
+        place = file[VELOCITY].id.get_chunk_info(0).byte_offset
+    content = with_byte_changed(small_run.read_bytes(), place + 5)
+    assert refused(tmp_path, content) == f"is damaged in {VELOCITY} (its checksum does not fit)"
+
+
+def test_a_file_that_cannot_be_read_says_why(small_run, tmp_path):
+    content = small_run.read_bytes()
+    for damaged, what in (
+        (content[:-1], f"is truncated, it has {len(content) - 1:,} of {len(content):,} bytes"),
+        (b"", "cannot be read as a record of results: it is empty"),
+        (b"not a record", "cannot be read as a record of results: it is no HDF5 file"),
+    ):
+        assert refused(tmp_path, damaged) == what
+    for number, what in ((errno.EAGAIN, "another process is writing it"), (errno.EACCES, "permission denied")):
+        error = OSError(number, "Unable to synchronously open file (unable to lock file, errno = 11)")
+        assert damage_in_words(error, 1000) == f"cannot be read as a record of results: {what}"

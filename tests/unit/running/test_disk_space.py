@@ -4,7 +4,7 @@ import pytest
 
 from dembound import check
 from dembound.motion.resources import in_words
-from dembound.running import Progress, plan, planning, run_case, warnings_before
+from dembound.running import plan, planning, run_case, warnings_before
 from dembound.running.planning import ALWAYS, results_bytes, space_warnings
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
@@ -55,24 +55,6 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     facts, warnings = check.check(planned.scene.case)
     assert facts["disk"] == f"about {need} of results; the disk has 100 kB free"
     assert warning in warnings
-
-
-class Heard(Progress):
-    """Writes down warnings."""
-
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-
-    def warned(self, message: str) -> None:
-        self.lines.append(message)
-
-
-def test_a_run_warns_before_it_begins(bar, tmp_path, monkeypatch) -> None:
-    heard = Heard()
-    with monkeypatch.context() as patch:
-        patch.setattr(planning, "disk_free", lambda path: 1e5)
-        run_case(bar(), tmp_path, heard)
-    assert "free" in heard.lines[0]
 
 
 def test_outputs_more_often_than_steps_are_mentioned(bar) -> None:

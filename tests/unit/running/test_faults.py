@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import cycle
 from pathlib import Path
 
@@ -162,12 +161,6 @@ with Folder(partial.parent, partial.stem).writing(anew=True):
     print("locked", flush=True)
     time.sleep(60)
 """
-
-
-def test_a_name_cannot_be_that_of_an_unfinished_run(tmp_path) -> None:
-    for name in ("bar.partial", "bar.replaced"):
-        with pytest.raises(CaseError, match="is not a valid name of a case, must not end in"):
-            run_case(replace(pulled(), name=name), tmp_path)
 
 
 def test_a_link_or_a_file_is_found_before_the_run(case, tmp_path) -> None:

@@ -1,4 +1,4 @@
-"""Whose results a run may replace."""
+"""Whose results a run may replace; runs of a batch share stages before the run, and a request to stop."""
 
 import threading
 from dataclasses import replace
