@@ -1,7 +1,6 @@
 """Examples in the documents are valid: cases are accepted, commands exist with their options and arguments.
 
-A TOML block is a whole case if it has a table ``[run]``, else a fragment. A case that the text says to save "as
-`NAME.toml`" right above it is saved under that name where the commands of a page are run.
+A TOML block is a whole case if it has a table ``[run]``, else a fragment. A translation has the code of its page.
 """
 
 import contextlib
@@ -26,10 +25,10 @@ ROOT = Path(__file__).parents[2]
 GALLERY = ROOT / "docs" / "gallery"
 """Its pages show shipped cases, which read files beside them."""
 
+START, CHINESE = ROOT / "docs" / "start", ROOT / "docs" / "zh"
+
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-BLOCK = re.compile(
-    r"(?:as `(?P<name>\w+\.toml)`:\n\n)?^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE
-)
+BLOCK = re.compile(r"^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
 ENDS = {"&&", "||", ";", "|", ">", ">>", "2>", "&"}
 """Words of a shell after which the arguments of a command are over."""
 
@@ -93,3 +92,12 @@ def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) 
         except UsageError as error:
             wrong.append(f"dembound {shlex.join(arguments)}: {error.format_message()}")
     assert not wrong
+
+
+@pytest.mark.parametrize("page", sorted({*CHINESE.glob("*.md")} - {CHINESE / "index.md"}), ids=lambda page: page.stem)
+def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_case(page: Path) -> None:
+    originals = [START / page.name, *(ROOT / "cases").glob("*.toml")]
+    texts = [path.read_text() for path in originals if path.is_file()]
+    assert [
+        code for code in [*blocks(page, "toml"), *blocks(page, "python")] if not any(code in text for text in texts)
+    ] == []

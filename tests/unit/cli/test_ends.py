@@ -5,12 +5,10 @@ import json
 import signal
 import subprocess
 import sys
-import threading
 
 import h5py
 import pytest
 
-from dembound.results.folder import Folder
 from dembound.running import job
 
 IMPORTED = """
@@ -52,29 +50,6 @@ def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypat
     resumed = dembound("resume", "results/bar.partial")
     assert resumed.code == 0
     assert "bar.partial" not in resumed.out + resumed.err
-
-
-def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp_path) -> None:
-    ready, done = threading.Event(), threading.Event()
-
-    def hold() -> None:
-        with Folder(tmp_path / "results", "bar").writing(anew=True):  # nothing else yet, as in a static stage
-            ready.set()
-            done.wait()
-
-    other = threading.Thread(target=hold)
-    other.start()
-    ready.wait()
-    try:
-        for path in ("results/bar", "results/bar.partial"):
-            answer = dembound("resume", path)
-            assert answer.code == 2
-            assert answer.err == (
-                "results/bar.partial: is being written by another run; wait for its end, or take another name\n"
-            )
-    finally:
-        done.set()
-        other.join()
 
 
 def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path) -> None:

@@ -163,23 +163,6 @@ with Folder(partial.parent, partial.stem).writing(anew=True):
 """
 
 
-def test_a_link_or_a_file_is_found_before_the_run(case, tmp_path) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    for place in ("bar", "bar.partial"):
-        link = tmp_path / f"links_{place}" / place
-        link.parent.mkdir()
-        link.symlink_to(tmp_path / "elsewhere")
-        with pytest.raises(CaseError, match="is a link"):
-            run_case(case, link.parent)
-        link.unlink()
-        link.write_text("mine")
-        with pytest.raises(CaseError, match="is a file"):
-            run_case(case, link.parent)
-    # a link above it may lead anywhere
-    (tmp_path / "results").symlink_to(tmp_path / "elsewhere")
-    assert run_case(case, tmp_path / "results").is_dir()
-
-
 @pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
 def test_a_signal_ends_a_run_with_a_checkpoint(case, whole, tmp_path, monkeypatch, number) -> None:
     class Signalled(job.Checkpoints):
