@@ -9,7 +9,7 @@ from dembound.disks.scene import build
 from dembound.disks.supports import forces_of
 from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
 from dembound.kinds import loads
-from dembound.places import is_within, spans_all
+from dembound.places import is_within
 
 COUNT = 14
 CENTRES = np.stack(np.meshgrid(*2 * [np.arange(1, 2 * COUNT, 2)]), axis=-1).reshape(-1, 2)
@@ -35,7 +35,7 @@ ROUND = {  # centre, semi-axes; with 3, 4, 5 and 5, 12, 13 times two radii there
     "upright ellipse": ((13, 15), (5, 10)),
 }
 MIRRORS = [np.array(m) for m in ([[1, 0], [0, 1]], [[-1, 0], [0, 1]], [[1, 0], [0, -1]], [[0, 1], [1, 0]])]
-RADII = [0.2, 0.25, 0.3, 1.0 / 3.0]
+RADII = [0.2, 0.3, 1.0 / 3.0]
 SHIFTS = [(0.0, 0.0), (-0.9, 0.1), (1234.56, -7e3 / 3.0)]
 
 
@@ -133,19 +133,6 @@ def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) 
         )
 
 
-def test_places_on_the_edge_of_a_box_are_within() -> None:
-    places = np.array([(0.3, 1.0), (0.31, 1.0), (0.3, -0.1), (-0.9, 2.0)])
-    box = (-0.9, 0.0, -0.9 + 1.2, 2.0)  # the sum is 0.29999999999999993
-    assert is_within(box, places, 2.0).tolist() == [True, False, False, True]
-
-
-def test_a_region_spans_a_scene_also_where_its_end_is_rounded() -> None:
-    whole = (0.1, 0.0, 0.1 + 0.2, 1.0)
-    assert spans_all((0.1, 0.2, 0.3, 0.4), whole, 0)
-    assert not spans_all((0.1, 0.2, 0.3, 0.4), whole, 1)
-    assert not spans_all((0.1, 0.2, 0.299, 0.4), whole, 0)
-
-
 CASE = """
 [packing]
 pattern = "A"
@@ -173,9 +160,7 @@ duration = 0.1
 """
 
 
-@pytest.mark.parametrize(
-    "points", [POLYGONS[name] for name in ("square", "notched between disks", "diamond", "horseshoe")]
-)
+@pytest.mark.parametrize("points", [POLYGONS[name] for name in ("diamond", "horseshoe")])
 def test_the_pressure_in_a_mirrored_hole_is_mirrored(points) -> None:
     def forces(numbers) -> dict[tuple[int, int], np.ndarray]:
         case = loads(CASE.format(points=typed(numbers, 0.2, (0.0, 0.0))))

@@ -41,19 +41,6 @@ def test_nothing_is_raised_before_it_is_looked_for() -> None:
     look()
 
 
-def test_a_signal_that_nobody_looks_at_is_raised_at_the_end() -> None:
-    def work(error: Exception | None) -> None:
-        with Interrupts():
-            send()
-            if error is not None:
-                raise error
-
-    with pytest.raises(Stopped):
-        work(None)
-    with pytest.raises(ValueError, match="mine"):
-        work(ValueError("mine"))
-
-
 def test_a_second_signal_acts_at_once_unless_it_is_the_same_request() -> None:
     done = []
 

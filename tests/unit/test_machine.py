@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from dembound import machine
-from dembound.machine import Memory, cores_here, memory_here, memory_ran_out, private_folder, user_cache
+from dembound.machine import Memory, memory_here, memory_ran_out, private_folder
 
 GIB = 2.0**30
 
@@ -86,14 +86,6 @@ def test_pages_of_removed_arrays_are_given_back() -> None:
     assert left < 8e6  # of 64 MB
 
 
-def test_cores_are_those_of_this_process(monkeypatch) -> None:
-    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {3, 5, 6}, raising=False)
-    assert cores_here() == 3
-    monkeypatch.delattr(os, "sched_getaffinity")
-    monkeypatch.setattr(os, "cpu_count", lambda: 7)
-    assert cores_here() == 7
-
-
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="Windows has temporary files for each user")
 def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -114,14 +106,6 @@ def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, m
     assert make().name not in {own.name, f"dembound-{os.getuid()}"}
 
 
-def test_a_home_that_cannot_be_written_has_no_cache(tmp_path, monkeypatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert sys.platform != "linux" or user_cache() == tmp_path / "dembound"
-    (tmp_path / "file").touch()
-    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "file" / name))
-    assert user_cache() is None
-
-
 def test_a_library_that_cannot_be_loaded_is_missing_memory_only_within_a_limit(monkeypatch) -> None:
     unloaded = ImportError("failed to map segment"), OSError("Could not find/load shared object file"), SystemError()
     for limit, expected in ((None, False), (7e8, True)):
@@ -131,8 +115,3 @@ def test_a_library_that_cannot_be_loaded_is_missing_memory_only_within_a_limit(m
         assert not any(memory_ran_out(error) for error in others)
         assert memory_ran_out(MemoryError())
         assert memory_ran_out(OSError(errno.ENOMEM, "Cannot allocate memory"))
-
-
-def test_a_limit_of_addresses_counts_as_memory(root, monkeypatch) -> None:
-    monkeypatch.setattr(machine, "address_limit", lambda: 2e9)
-    assert memory_here(root()) == Memory(2e9, 2e9 - machine.RESERVED)

@@ -16,7 +16,6 @@ def test_all_cases_of_the_repository_are_listed_with_their_titles() -> None:
 
     assert set(shipped.names()) == set(shipped.titles()) == here
     assert all(shipped.titles().values())
-    assert shipped.groups() == ["charts", "cracks", "gallery", "lu2016", "records", "zhou2018"]
 
 
 def test_a_copy_of_a_case_can_be_read_where_it_is(tmp_path) -> None:
@@ -49,22 +48,6 @@ def test_nothing_is_overwritten(tmp_path) -> None:
 def test_an_unknown_name_is_refused(tmp_path) -> None:
     with pytest.raises(CaseError) as caught:
         shipped.copy("zhou218", tmp_path)
-    first, *lines = caught.value.problems
+    first, *_ = caught.value.problems
 
     assert first == 'NAME: is "zhou218", must be one of these (did you mean zhou2018?):'
-    # groups, cases of no group, and a line of each group's
-    firsts = ["charts", "bench"]
-    firsts += ["charts/blast", "cracks/concrete", "gallery/beta_sweep", "lu2016/fig7"]
-    firsts += ["records/strip_clc", "zhou2018/external_source"]
-    assert [line.split(", ")[0] for line in lines] == firsts
-    assert ", ".join(lines).split(", ") == [*shipped.groups(), *shipped.names()]
-
-
-def test_a_wheel_keeps_them_in_the_package_and_a_broken_one_says_so(tmp_path, monkeypatch) -> None:
-    package = tmp_path / "site" / "dembound"
-    package.mkdir(parents=True)
-    monkeypatch.setattr(shipped, "PACKAGE", package)
-    with pytest.raises(CaseError, match="this installation has none"):
-        shipped.folder()
-    (package / "_cases").mkdir()
-    assert shipped.folder() == package / "_cases"

@@ -1,15 +1,12 @@
 """Examples in the documents are valid: cases are accepted, commands exist with their options and arguments.
 
-A TOML block is a whole case if it has a table ``[run]``, else a fragment. A case that the text says to save "as
-`NAME.toml`" right above it is saved under that name where the commands of a page are run.
+A TOML block is a whole case if it has a table ``[run]``, else a fragment. A translation has the code of its page.
 """
 
 import contextlib
 import io
 import re
 import shlex
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -28,10 +25,10 @@ ROOT = Path(__file__).parents[2]
 GALLERY = ROOT / "docs" / "gallery"
 """Its pages show shipped cases, which read files beside them."""
 
+START, CHINESE = ROOT / "docs" / "start", ROOT / "docs" / "zh"
+
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-BLOCK = re.compile(
-    r"(?:as `(?P<name>\w+\.toml)`:\n\n)?^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE
-)
+BLOCK = re.compile(r"^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
 ENDS = {"&&", "||", ";", "|", ">", ">>", "2>", "&"}
 """Words of a shell after which the arguments of a command are over."""
 
@@ -97,28 +94,10 @@ def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) 
     assert not wrong
 
 
-def test_the_case_of_the_first_tunnel_is_the_shipped_one() -> None:
-    (shown,) = (text for text in blocks(ROOT / "docs/start/first_tunnel.md", "toml") if "[run]" in text)
-    assert (ROOT / "cases" / "first_tunnel.toml").read_text().endswith(shown)
-
-
-@pytest.mark.slow
-def test_the_first_wave_runs_as_written(tmp_path, monkeypatch, capsys) -> None:
-    """In an empty folder, block after block; what Python prints is the next block of the page."""
-    monkeypatch.chdir(tmp_path)
-    printed = None
-    for block in BLOCK.finditer((ROOT / "docs/start/first_wave.md").read_text()):
-        if block["name"]:
-            (tmp_path / block["name"]).write_text(block["text"])
-        if block["language"] == "sh":
-            for arguments in commands(block["text"]):
-                subprocess.run([sys.executable, "-m", "dembound", *arguments], check=True)
-        if printed is not None:
-            assert printed == block["text"]
-            printed = None
-        if block["language"] == "python":
-            capsys.readouterr()
-            exec(block["text"], {})
-            printed = capsys.readouterr().out
-    assert {path.name for path in (tmp_path / "results").iterdir()} >= {"bar", "bar_fixed", "random_calibrated"}
-    assert {path.name for path in tmp_path.glob("*.png")} == {"sides.png", "random.png"}
+@pytest.mark.parametrize("page", sorted({*CHINESE.glob("*.md")} - {CHINESE / "index.md"}), ids=lambda page: page.stem)
+def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_case(page: Path) -> None:
+    originals = [START / page.name, *(ROOT / "cases").glob("*.toml")]
+    texts = [path.read_text() for path in originals if path.is_file()]
+    assert [
+        code for code in [*blocks(page, "toml"), *blocks(page, "python")] if not any(code in text for text in texts)
+    ] == []

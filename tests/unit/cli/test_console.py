@@ -1,4 +1,4 @@
-"""Texts are printed unchanged: without markup, emoji codes and commands to the terminal."""
+"""Texts are printed unchanged: without markup and commands to the terminal; compiling is reported once."""
 
 import io
 import os
@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from rich.table import Table
 
-from dembound.cli import console
-from dembound.cli.console import PlainConsole, prepare_streams, print_rows
+from dembound.cli.compiling import MESSAGE
+from dembound.cli.console import PlainConsole, prepare_streams
 from dembound.errors import HIDDEN, visible
 
 
@@ -36,18 +36,6 @@ def test_texts_cells_and_titles_appear_as_they_are() -> None:
         assert printed(table).count(shown) == 2
 
 
-@pytest.mark.parametrize("is_terminal", [True, False])
-def test_names_in_tables_stay_whole(monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
-    narrow = PlainConsole(file=io.StringIO(), width=60, force_terminal=is_terminal)
-    monkeypatch.setattr(console, "out", narrow)
-    names = [f"a-monitor-with-a-long-name-{k}" for k in range(3)]
-    print_rows("title", [("choice", "error (%)"), (" ".join(names), "1")])
-    assert isinstance(narrow.file, io.StringIO)
-    shown = narrow.file.getvalue()
-    assert [name for name in names if name in shown] == names
-    assert any(" ".join(names) in line for line in shown.splitlines()) is not is_terminal
-
-
 def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
     stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     monkeypatch.setattr(sys, "stdout", stream)
@@ -60,7 +48,7 @@ def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
 def ended(code: str, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run a command line, given by its arguments, in a process of its own."""
     return subprocess.run(
-        [sys.executable, *options.pop("flags", ()), "-c", code],
+        [sys.executable, "-c", code],
         text=True,
         check=False,
         stderr=subprocess.PIPE,
@@ -72,24 +60,16 @@ def command(*arguments: str) -> str:
     return f"import sys; sys.argv = ['dembound', *{list(arguments)!r}]; from dembound.__main__ import main; main()"
 
 
-@pytest.mark.parametrize("flags", [(), pytest.param(("-u",), marks=pytest.mark.slow)])
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device")
-def test_what_nobody_reads_any_more_is_dropped_and_a_full_disk_one_line(flags: tuple[str, ...]) -> None:
+def test_what_nobody_reads_any_more_is_dropped_and_a_full_disk_one_line() -> None:
     reading, writing = os.pipe()
     os.close(reading)
-    for word in ("cases", "--help"):
-        done = ended(command(word), flags=flags, stdout=writing)
-        assert (done.returncode, done.stderr) == (0, "")
+    done = ended(command("cases"), stdout=writing)
+    assert (done.returncode, done.stderr) == (0, "")
     os.close(writing)
     with open("/dev/full", "w") as full:
-        done = ended(command("cases"), flags=flags, stdout=full)
+        done = ended(command("cases"), stdout=full)
     assert (done.returncode, done.stderr) == (5, "output: No space left on device\n")
-
-
-def test_an_output_that_is_closed_is_none() -> None:
-    shell = ["sh", "-c", 'exec "$0" -c "$1" >&-', sys.executable, command("cases")]
-    done = subprocess.run(shell, text=True, check=False, capture_output=True)
-    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_text_that_reorders_itself_does_not_reach_the_terminal() -> None:
@@ -100,7 +80,23 @@ def test_text_that_reorders_itself_does_not_reach_the_terminal() -> None:
     assert visible("a\u202eb\u200bc") == "a\\u202eb\\u200bc"
 
 
-def test_pictures_are_drawn_whatever_backend_is_asked_for() -> None:
-    code = command("cases").replace("main()", "\ntry: main()\nexcept SystemExit: pass\nimport dembound.plot.style")
-    done = ended(code, env=os.environ | {"MPLBACKEND": "nosuch"}, stdout=subprocess.DEVNULL)
-    assert (done.returncode, done.stderr) == (0, "")
+COMPUTE = """
+import numpy as np
+from dembound.cli.app import prepare_computing
+prepare_computing(None)
+prepare_computing(None)
+from dembound.kernels.common import column_sum, largest
+column_sum(np.ones((2, 2)), 0)
+largest(np.ones(2))
+"""
+
+
+def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
+    def printed() -> str:
+        kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        return subprocess.run(
+            [sys.executable, "-c", COMPUTE], capture_output=True, text=True, check=True, env=kept
+        ).stderr
+
+    assert printed() == f"{MESSAGE}\n"
+    assert printed() == ""  # loaded

@@ -1,26 +1,23 @@
-"""However a command ends, it prints one line on its partial results and remedies, and has its exit code."""
+"""What run prints before and after a run, and how any command ends: one line with remedies, and its exit code."""
 
 import errno
+import json
 import signal
 import subprocess
 import sys
-import threading
 
 import h5py
 import pytest
 
-from dembound.__main__ import main
-from dembound.results.folder import Folder
 from dembound.running import job
 
 IMPORTED = """
 import os, signal, sys
-signal.signal(signal.SIGHUP, signal.{hangups})
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may be run where it is ignored
 class Signals:
     def find_spec(self, name, path=None, target=None):
         if name == "numpy":
-            os.kill(os.getpid(), signal.{number})
+            os.kill(os.getpid(), signal.SIGINT)
 sys.meta_path.insert(0, Signals())
 sys.argv = ["dembound", "dispersion", "--horizon", "0"]
 from dembound.__main__ import main
@@ -29,23 +26,9 @@ main()
 """A command that receives a signal as it begins to import numpy."""
 
 
-def ended(number: str, hangups: str = "SIG_DFL") -> tuple[int, str]:
-    program = IMPORTED.format(number=number, hangups=hangups)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    return done.returncode, done.stderr
-
-
-@pytest.mark.parametrize(
-    "number", ["SIGINT", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGTERM", "SIGHUP"))]
-)
-def test_a_signal_during_imports_has_its_line_and_code(number) -> None:
-    assert ended(number) == (128 + getattr(signal, number), "dembound: stopped\n")
-
-
-def test_a_hangup_that_is_to_be_ignored_is_ignored() -> None:
-    code, said = ended("SIGHUP", "SIG_IGN")  # as by nohup
-    assert code == 2
-    assert "--horizon" in said
+def test_a_signal_during_imports_has_its_line_and_code() -> None:
+    done = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "dembound: stopped\n")
 
 
 def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypatch) -> None:
@@ -67,31 +50,6 @@ def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypat
     resumed = dembound("resume", "results/bar.partial")
     assert resumed.code == 0
     assert "bar.partial" not in resumed.out + resumed.err
-
-
-def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp_path) -> None:
-    ready, done = threading.Event(), threading.Event()
-
-    def hold() -> None:
-        with Folder(tmp_path / "results", "bar").writing(anew=True):  # nothing else yet, as in a static stage
-            ready.set()
-            done.wait()
-
-    other = threading.Thread(target=hold)
-    other.start()
-    ready.wait()
-    try:
-        for path in ("results/bar", "results/bar.partial"):
-            answer = dembound("resume", path)
-            assert answer.code == 2
-            assert answer.err == (
-                "results/bar.partial: is being written by another run; wait for its end, or take another name\n"
-            )
-    finally:
-        done.set()
-        other.join()
-    answer = dembound("resume", "results/bar")
-    assert (answer.code, answer.err) == (2, "results/bar: there is no such folder of results\n")
 
 
 def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path) -> None:
@@ -123,7 +81,6 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
     before = record.read_bytes()
     change = ("--set", "run.safety=0.5")
     for arguments in (
-        ("results/bar/run.h5", *change),
         ("results/bar", *change),
         (tmp_path / "results" / "bar", *change, "--output", "./results", "--name", "bar"),
     ):
@@ -134,18 +91,11 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
         assert line.endswith("bar/run.h5, from which the case is read; give another --name or --output")
     assert record.read_bytes() == before
 
-    for arguments in (("--name", "half", *change), ("--output", "other", *change), ()):
-        assert dembound("rerun", "results/bar", *arguments).code == 0
-    assert (tmp_path / "results" / "half" / "run.h5").is_file()
-    assert (tmp_path / "other" / "bar" / "run.h5").is_file()
+    assert dembound("rerun", "results/bar", "--name", "half", *change).code == 0
 
 
 def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_are_one_line(dembound, written) -> None:
-    # after the end of the run
-    first = dembound("run", written("bar", {"wave.pulse.start": 1.0}))
-    again = dembound("resume", "results/bar", "--until", "0.011")
-    assert "bar: warning: " in first.err
-    assert {line.partition(": ")[0] for line in again.err.splitlines()} == {"bar"}
+    dembound("run", written())
 
     with open("results/bar/summary.json", "w") as file:
         file.write("{")
@@ -164,30 +114,6 @@ def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_a
         assert said in line
 
 
-def test_memory_that_runs_out_has_one_line(dembound, written, monkeypatch) -> None:
-    def without_memory(*_: object) -> None:
-        raise MemoryError("Unable to allocate 14.5 MiB")
-
-    monkeypatch.setattr(job, "write_paraview", without_memory)
-    answer = dembound("run", written())
-    assert answer.code == 3
-    assert [line for line in answer.err.splitlines() if "warning" not in line] == [
-        "dembound: memory ran out: Unable to allocate 14.5 MiB",
-        "bar: histories so far are in results/bar.partial",
-        "bar: to continue: dembound resume results/bar.partial",
-    ]
-
-
-def test_too_few_addresses_are_said_before_libraries_are_loaded(monkeypatch, capsys) -> None:
-    monkeypatch.setattr("dembound.__main__.address_limit", lambda: 1e8)
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 3
-    assert capsys.readouterr().err == (
-        "dembound: the address space is limited to 100 MB (ulimit -v), 600 MB are needed\n"
-    )
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are used")
 def test_a_link_to_nothing_and_a_folder_that_is_gone_are_said(dembound, written, tmp_path, monkeypatch) -> None:
     (tmp_path / "results").symlink_to("/nowhere/results")
@@ -198,3 +124,33 @@ def test_a_link_to_nothing_and_a_folder_that_is_gone_are_said(dembound, written,
     (tmp_path / "gone").rmdir()
     answer = dembound("new")
     assert (answer.code, answer.err) == (5, "the current folder has been deleted; change to another one\n")
+
+
+def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp_path) -> None:
+    answer = dembound("run", written())
+    found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())["monitors"]["middle"]
+    assert answer.out.splitlines()[1:] == [
+        "  monitor  component  peak (mm/s)  at (ms)",
+        f"  middle         v_x  {1e3 * found['peak_velocity']:>11.3g}  {1e3 * found['peak_time']:>7.3g}",
+        "bar: results in results/bar",
+        "  run.h5, summary.json, paraview/",
+        "  next: dembound report results/bar",
+        "        dembound estimate results/bar",
+    ]
+
+
+def test_nothing_is_replaced_unseen(dembound, written, tmp_path) -> None:
+    path = written()
+
+    def said(*words: str) -> list[str]:
+        lines = dembound("run", path, *words).err.splitlines()
+        return [line for line in lines if "replaces" in line or "anew" in line]
+
+    then = "when it is complete; to keep both, stop it and give --name or --output"
+    assert said() == []
+    assert said() == [f"bar: replaces results/bar (of the same case) {then}"]
+    changed = ("--set", "run.safety=0.5", "--set", "run.duration=0.02")
+    assert said(*changed) == [f"bar: replaces results/bar (with another run.duration, run.safety) {then}"]
+    (tmp_path / "results" / "bar").rename(tmp_path / "results" / "bar.partial")
+    stopped = "the stopped run in results/bar.partial, which dembound resume would have continued"
+    assert said() == [f"bar: begins anew, without {stopped}"]

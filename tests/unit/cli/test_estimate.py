@@ -19,7 +19,6 @@ def test_a_run_is_estimated_and_drawn(dembound, tmp_path):
     written(tmp_path)
     answer = dembound("run", "bar.toml", "--estimate")
     assert answer.code == 0, answer.err
-    assert "the rock  at most" in answer.out
     folder = tmp_path / "results" / "bar"
     found = json.loads((folder / "summary.json").read_text())["error_estimate"]
     # the right side returns (1 − β)/(1 + β) = 1/3 of what arrives, which adds to the motion beside it
@@ -62,8 +61,3 @@ def test_a_run_with_cracks_is_repeated_on_request(dembound, tmp_path):
     said = " ".join(answer.out.split())
     assert "repeated at 0.98 of the time step: " in said
     assert "bonds break: which ones" not in said
-    written(tmp_path, **{"output.pictures": False})
-    dembound("run", "bar.toml")
-    answer = dembound("estimate", "results/bar", "--repeat")
-    assert answer.code == 2
-    assert answer.err.strip().endswith("run.h5: has no broken bonds that --repeat could compare")

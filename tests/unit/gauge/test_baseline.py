@@ -1,11 +1,12 @@
-"""Offset and drift are found between the waves, and are left alone where there are none."""
+"""Offset and drift are found between the waves; signals that cannot be what they are taken for are refused."""
 
 import numpy as np
 import pytest
 from gauge_records import drift, noise, offset, signal
 
 from dembound.errors import CaseError
-from dembound.gauge.baseline import Treatment, find_baseline, quiet_samples, treated
+from dembound.gauge.baseline import Treatment, find_baseline, treated
+from dembound.gauge.checks import clipped, unfit_signal
 from dembound.gauge.filters import Filters
 from dembound.gauge.reading.signal import Signal
 
@@ -41,24 +42,6 @@ def test_a_signal_without_a_baseline_keeps_its_bits():
     assert "baseline: nothing to remove" in signal.notes[0]
 
 
-def test_a_long_wave_has_the_offset_of_its_beginning():
-    time = np.arange(1000.0)
-    wave = np.sin(np.clip((time - 200.0) / 300.0, 0.0, None))  # never quiet again
-    found = find_baseline(wave + 0.5 + 1e-3 * np.random.default_rng(1).standard_normal(1000))
-    assert not found.drifts
-    # a hundredth of the wave is counted as quiet, in its first three samples
-    assert found.values[0] == pytest.approx(0.5, abs=0.01)
-    assert not found.quiet[220:].any()
-
-
-def test_quiet_samples_are_away_from_waves():
-    quiet = quiet_samples(VALUES)
-    arrival = 20e-6 + 0.6 / 2740.0
-    width = 60e-6  # of the triangle, at half its height
-    assert quiet[arrival - width > TIME].all()
-    assert not quiet[(arrival - 0.2 * width < TIME) & (arrival + 120e-6 + 0.2 * width > TIME)].any()
-
-
 def test_filters_keep_waves_where_they_are():
     time = 1e-6 * np.arange(20_000)
     slow, fast = np.cos(2.0 * np.pi * 1e3 * time), np.cos(2.0 * np.pi * 50e3 * time)
@@ -79,9 +62,39 @@ def test_filters_keep_waves_where_they_are():
 def test_filters_that_a_record_does_not_allow_are_refused():
     for filters, said in (
         (Filters(low_pass=6e5), "--low-pass: is 600000 Hz, must be from 600 to below 5e+05 Hz in this record"),
-        (Filters(high_pass=10.0), "--high-pass: is 10 Hz, must be from 600"),
-        (Filters(notches=(50.0,)), "--notch: is 50 Hz, must be from 600"),
         (Filters(low_pass=2e3, high_pass=3e3), "--high-pass: is 3000 Hz, must be below the low pass, 2000 Hz"),
     ):
         with pytest.raises(CaseError, match=said.replace("+", r"\+")):
             treated(Signal(TIME, VALUES, "V"), Treatment(filters=filters))
+
+
+STEPS = np.arange(1000.0)
+BELL = np.exp(-(((STEPS - 500.0) / 80.0) ** 2))
+TRIANGLE = np.clip(1.0 - np.abs(STEPS - 500.0) / 100.0, 0.0, None)
+
+
+def test_what_a_digitiser_makes_of_a_crest_is_not_clipped():
+    for wave in (BELL, TRIANGLE):
+        for levels in (16, 256, 4096):
+            assert clipped(np.round(wave * levels) / levels) == 0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_what_is_cut_is_clipped(noise):
+    wave = TRIANGLE + noise * np.random.default_rng(1).standard_normal(1000)
+    assert clipped(np.minimum(wave, 0.8)) == pytest.approx(41, abs=2)  # a fifth of both slopes
+    assert clipped(np.minimum(wave, 0.97)) == 0  # seven samples of a width of a hundred do not matter
+    (said,) = unfit_signal(-np.minimum(wave, 0.8))
+    assert "have its smallest value, -0.8" in said
+    assert not list(unfit_signal(-np.minimum(wave, 0.8), may_be_clipped=True))
+
+
+@pytest.mark.parametrize("offset", [0.0, 100.0])
+def test_noise_without_a_wave_and_few_samples_are_seen(offset):
+    noise = np.random.default_rng(1).standard_normal(1000)
+    (said,) = unfit_signal(offset + noise)
+    assert said.startswith(f"the signal is noise: its largest value is {np.abs(noise - np.median(noise)).max():.1f}")
+    assert not list(unfit_signal(offset + 20.0 * TRIANGLE + noise))
+    assert "too coarse" in next(unfit_signal(20.0 * (STEPS == 500.0) + noise))
+    assert "the largest wave has 1 samples" in next(unfit_signal(TRIANGLE[::100]))
+    assert not list(unfit_signal(TRIANGLE[::10]))

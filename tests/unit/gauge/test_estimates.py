@@ -56,10 +56,6 @@ def test_lines_have_their_usual_standard_error():
     # logarithms that fall evenly, by 0.1 on 2 m, leave no error but rounding's
     decay = attenuation(np.arange(4.0), np.exp(-0.1 * np.arange(4.0)), 2.0)
     assert (decay.value, decay.error) == (pytest.approx(0.05, rel=1e-12), pytest.approx(0.0, abs=1e-12))
-    # two peaks have none, and one makes no line
-    speed = wave_speed(np.array([1.0, 3.0]), 2.0)
-    assert (speed.value, speed.points) == (2.0, 2)
-    assert np.isnan(speed.error)
     with pytest.raises(CaseError, match="--wave-speed: needs two tension peaks to be estimated, 1 found; give it"):
         wave_speed(np.array([1.0]), 2.0)
     # weak peaks count less: the last one's square weight, 1e-8, times its time's deviation of 1 from the line through
@@ -68,14 +64,6 @@ def test_lines_have_their_usual_standard_error():
     weighted = wave_speed(times, 1.0, np.array([1.0, 0.1, 0.01, 1e-4]))
     assert weighted.value == pytest.approx(2.0, rel=1e-8 * 3.0 / 0.01 * 1.1)
     assert wave_speed(times, 1.0).value < 1.6  # 2/1.3
-
-
-def test_what_rings_behind_a_pulse_that_is_not_back_is_no_tension_peak(felt):
-    time, stress = felt()
-    stress[time > 1e-6 * 370.0] = 0.0  # the pulse has passed, 20 + 0.6/2740 + 120 µs, and is not back
-    rings = np.abs(stress).max() * np.cos(2.0 * np.pi * time / 50e-6)
-    assert len(tension_peaks(time, stress + 0.0099 * rings).time) == 0
-    assert len(tension_peaks(time, stress + 0.0101 * rings).time) > 0
 
 
 def test_the_incident_pulse_is_what_comes_before_its_front_is_back(felt):
@@ -100,16 +88,10 @@ def test_pulses_that_cannot_be_found_are_refused(felt):
     with pytest.raises(CaseError, match=NOT_ENDED):
         incident_pulse(time, stress, *BAR)
     assert incident_pulse(time, stress, *BAR, end=400e-6)[0][-1] == pytest.approx(400e-6, abs=1e-6)
-    with pytest.raises(CaseError, match=NOT_ENDED):  # its front is back before it has risen
-        incident_pulse(*felt(rise=400e-6), POSITION, POSITION + 0.01, SPEED)
     # half its crest comes after 20 + 20 µs and 0.6 m at 2740 m/s, at 258.98 µs, and so is passed in sample 259
     for end in (-1.0, 2e-4, np.nan):
         with pytest.raises(CaseError, match=r"--pulse-end: is \S+ s, must be after 0.000259 s, when the pulse is half"):
             incident_pulse(*felt(), *BAR, end=end)
-    with pytest.raises(CaseError, match="--pulse-end: leaves 2 samples of the incident pulse, must leave three"):
-        incident_pulse(np.arange(4.0), np.array([0.0, -1.0, 0.0, 1.0]), 0.5, 1.0, 1.01)
-    with pytest.raises(CaseError, match="--scale: gives no compression"):
-        incident_pulse(time, np.abs(stress), *BAR)
 
 
 def test_the_image_frees_the_end_and_leaves_the_rest(felt):
@@ -180,8 +162,3 @@ def test_the_pull_back_of_the_first_arrival_gives_the_strength_of_a_sharp_spall(
     early = np.interp(time, 1e-6 * np.array([20, 30, 40]), [0.0, 1.0, 0.0])
     again = np.interp(time, 1e-6 * np.array([180, 240, 300]), [0.0, 3.0, 0.0])
     assert pull_back_strength(time, twice + early + again, *bar) == pytest.approx(0.5 * 2e6 * 10.0, rel=1e-12)
-    # nor does an end that does not fall, or a bar shorter than two samples
-    for velocity in (np.linspace(0.0, 1.0, 100), -np.ones(100), np.zeros(100)):
-        assert np.isnan(pull_back_strength(1e-6 * np.arange(100), velocity, 2620.0, SPEED, LENGTH))
-    velocity = np.interp(np.arange(100), [10, 20, 30, 40], [0.0, 10.0, 4.0, 8.0])
-    assert np.isnan(pull_back_strength(1e-6 * np.arange(100), velocity, 2620.0, 1000.0, 0.001))

@@ -50,23 +50,10 @@ def test_a_record_knows_its_bar_unless_given_otherwise(record, felt):
         read_gauge(record)
     with pytest.raises(CaseError, match="--monitor: is end, must be between the bar's ends, which is far or near"):
         read_gauge(record, "end")
-    # the only gauge needs no name; monitors at the ends are none
-    with h5py.File(record, "r+") as file:
-        del file.attrs["density"]
-        for name, place in (("start", 0.0), ("tip", 0.99 * (1.0 - 1e-15))):
-            file.copy("histories/far", f"histories/{name}")
-            file[f"histories/{name}"].attrs["position"] = [place, 0.0]
-        del file["histories/far"]
-    gauge = read_gauge(record)
-    assert (gauge.position, gauge.density) == (0.6, None)
     with h5py.File(record, "r+") as file:
         file["histories/near"].attrs["range"] = "first"
     with pytest.raises(CaseError, match="has a bar of several ranges, must have one without interfaces"):
         read_gauge(record, "near")
-    with h5py.File(record, "r+") as file:
-        del file["histories/near"]
-    with pytest.raises(CaseError, match="contains no history of stress between the ends of a bar"):
-        read_gauge(record)
 
 
 MISSING = ["--position: is missing, must be the gauge's place (m) from the loaded end"]
@@ -77,16 +64,12 @@ MISSING += ["--length: is missing, must be that of the bar (m)"]
     ("given", "said"),
     [
         ({}, MISSING),
-        ({"position": 0.6}, MISSING[1:]),
         (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
-        (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
         (
             BAR | {"length": 990.0},
             ["--length: is 990 m, must be at most 100 m; positions and lengths are in m, not mm"],
         ),
-        (BAR | {"length": np.inf}, ["--length: is inf m, must be finite and above 0"]),
         (BAR | {"reading": Reading(scale=0.0)}, ["--scale: is 0, must be finite and not 0"]),
-        (BAR | {"reading": Reading(scale=np.nan)}, ["--scale: is nan, must be finite and not 0"]),
         (BAR | {"monitor": "near"}, ["--monitor: is for results of a run, gauge.csv is a text file"]),
         (
             {"position": 0.6, "length": 0.0, "density": np.nan},
@@ -101,19 +84,6 @@ def test_gauges_beside_the_bar_are_refused(text, monkeypatch, given, said):
     assert caught.value.problems == said
 
 
-def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
-    (tmp_path / "short.txt").write_text("0 1\n1 2\n")
-    (tmp_path / "wide.txt").write_text("0 1 2\n1 2 3\n")
-    for path, said in (
-        (tmp_path / "absent.txt", "no file"),
-        (tmp_path / "wide.txt", r"--column: is missing, \S+ has 3 columns; must be a number from 1 to 3"),
-        (tmp_path / "short.txt", "contains 2 samples, must contain three or more"),
-        (small_run, "contains no history of stress between the ends of a bar"),
-    ):
-        with pytest.raises(CaseError, match=said):
-            read_gauge(path, position=0.6, length=0.99)
-
-
 def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
     np.savetxt(tmp_path / "end.txt", np.column_stack([np.arange(400), VELOCITY]))
     time, velocity = read_free_end(record, "end")
@@ -125,7 +95,7 @@ def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
     np.testing.assert_array_equal(velocity, VELOCITY)
 
 
-def test_what_does_not_move_with_the_free_end_is_refused(record, text, tmp_path):
+def test_what_does_not_move_with_the_free_end_is_refused(record):
     def refused(file, name):
         with pytest.raises(CaseError) as caught:
             read_free_end(file, name)
@@ -139,26 +109,9 @@ def test_what_does_not_move_with_the_free_end_is_refused(record, text, tmp_path)
         file["cracks/time"] = np.empty(0)
     assert refused(record, "end") == "--free-end: is end, where the bar's end is fixed, must be free"
     with h5py.File(record, "r+") as file:
-        del file["histories/end"]
-    assert refused(record, "near") == said.format("near") + "but the results have none there"
-    # beside a text file it is another
-    assert refused(text, "end") == "--free-end: is end, must be a text file of time (s) and velocity (m/s)"
-    (tmp_path / "end.txt").write_text("0 1\n1 2\n")
-    assert "contains 2 samples, must contain three or more" in refused(text, str(tmp_path / "end.txt"))
-    for loaded, reported in (
-        ("both", "both ends"),
-        ("none", "neither end"),
-        (None, "an end that the record does not name"),
-    ):
-        with h5py.File(record, "r+") as file:
-            file.attrs.pop("loaded", None)
-            if loaded:
-                file.attrs["loaded"] = loaded
-        line = f"{record}: has a bar loaded at {reported}, must be loaded at the left or the right"
-        assert refused(record, "far") == line
-        with pytest.raises(CaseError) as caught:
-            read_gauge(record, "far")
-        assert caught.value.problems == [line]
+        file.attrs["loaded"] = "both"
+    line = f"{record}: has a bar loaded at both ends, must be loaded at the left or the right"
+    assert refused(record, "far") == line
 
 
 @pytest.mark.parametrize("loaded", ["left", "right"])

@@ -32,8 +32,6 @@ FILES = {
     "infiniium": ("Revision:,1\nXUnits:, second\nYUnits:, Volt\nXInc:, 5e-4\nData:\n", lines("{:.6e},{:.4e}"), "V"),
     "picoscope": ("Time,Channel A\n(ms),(mV)\n\n", lines("{:.6f},{:.4f}", 1e3, 1e3), "V"),
     "tabs and commas": ("t [µs]\tU [mV]\n", commas("{:.3f}\t{:.4f}", 1e6, 1e3), "V"),
-    "blanks and commas": ("", commas("{:.6f}  {:.4f}"), "Pa"),
-    "quotes": ('"Time (s)","U (V)"\n', [s.replace("'", '"') for s in QUOTED], "V"),
     "comments": ("# time (ms) strain\n# 1 2\n", [f"{s}  # {i}" for i, s in enumerate(lines("{:.6f} {:.4f}", 1e3))], ""),
     "microstrain": ("Time (ns);gauge 1 (µε)\n", lines("{:.1f};{:.1f}", 1e9, 1e6), "strain"),
 }  # fmt: skip
@@ -51,14 +49,6 @@ def test_instruments_are_read(tmp_path, name):
     assert signal.unit == ("V" if name == "comments" else unit)
 
 
-def test_other_encodings_are_read(tmp_path):
-    text = FILES["tabs and commas"][0] + "\n".join(FILES["tabs and commas"][1])
-    path = tmp_path / "scope.txt"
-    for encoding in ("latin-1", "utf-16", "utf-8-sig"):
-        path.write_bytes(text.encode(encoding))
-        np.testing.assert_allclose(read_signal(path).values, VALUES, rtol=1e-12)
-
-
 def with_header(path, header):
     """Equal times and values of 0 to 4 µs under a header."""
     samples = 1e-6 * np.arange(5.0)
@@ -70,11 +60,7 @@ def with_header(path, header):
     ("header", "step", "size"),
     [
         ("time (s) velocity (mm/s)", 1.0, 1e-3),
-        ("time (ms) free end (cm/s)", 1e-3, 1e-2),
-        ("t v [km/s]", 1.0, 1e3),
         ("t[us] v[m/s]", 1e-6, 1.0),
-        ("time velocity", 1.0, 1.0),
-        ("(ms) (mm/s)", 1e-3, 1e-3),
         ("time (s) velocity (in/s)", 1.0, "the header has values in in/s, must be m/s, cm/s, mm/s or km/s"),
         ("time (min) velocity (m/s)", 1.0, "the header has times in min, must be s, ms, µs or ns; or --time-unit"),
     ],
@@ -90,11 +76,6 @@ def test_units_behind_names_that_blanks_separate_are_read_or_refused(header, ste
     np.testing.assert_allclose(velocity, 1e-6 * size * np.arange(5.0), rtol=1e-12)
 
 
-def test_a_stress_in_an_unknown_unit_is_not_taken_for_pascals(tmp_path):
-    path = with_header(tmp_path / "gauge.txt", "time (s) stress (psi)")
-    assert (read_signal(path).unit, read_signal(path, Reading(unit="MPa")).unit) == ("", "Pa")
-
-
 def test_columns_go_by_name_or_number(tmp_path):
     path = tmp_path / "scope.csv"
     path.write_text("CH1 (mV),CH2 (V),Time (s),CH2\n" + "".join(f"{i},{2 * i},{3 * i},{4 * i}\n" for i in range(4)))
@@ -108,11 +89,8 @@ def test_columns_go_by_name_or_number(tmp_path):
     assert read("4", "3") == (3.0, 4.0)
     for reading, said in (
         (Reading("CH2", "3"), "--column: is CH2, is the name of several columns, give its number"),
-        (Reading("CH3"), "--column: is CH3, must be CH1, CH2, Time, CH2"),
         (Reading("5"), f"--column: is 5, must be 1 to 4 in {path}"),
-        (Reading("1", "t"), "--time-column: is t, must be CH1, CH2, Time, CH2"),
         (Reading(None, "3"), f"--column: is missing, {path} has 4 columns; must be CH1, CH2, CH2"),
-        (Reading("1", "3", time_unit="h"), "--time-unit: is h, must be s, ms, µs (us) or ns"),
         (Reading("1", "3", unit="kN"), "--unit: is kN, must be Pa, kPa"),
     ):
         with pytest.raises(CaseError) as caught:
@@ -216,10 +194,7 @@ def test_bridges_that_make_no_sense_are_refused(tmp_path):
     [
         ("Time/us,in/µε", 1e-6, "strain", 1e-6),
         ("t/ms,Strain/%", 1e-3, "strain", 1e-2),
-        ("t / s,σ / MPa", 1.0, "Pa", 1e6),
-        ("t/us,U/mV", 1e-6, "V", 1e-3),
         ("t/us,bridge mV/V", 1e-6, "", 1.0),  # units of their own, not quantities over units
-        ("t/us,mV/V", 1e-6, "", 1.0),
         ("t/us,mm/m", 1e-6, "strain", 1e-3),
     ],
 )

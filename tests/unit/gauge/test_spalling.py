@@ -44,20 +44,15 @@ def test_a_record_knows_speed_and_attenuation_unless_an_estimate_is_asked_for(ga
     recorded = replace(gauge, metadata=METADATA)
     known = evaluate(recorded)
     assert (known.speed.value, known.attenuation.value, known.peaks) == (2740.0, 0.4, None)
-    other = evaluate(recorded, speed=2000.0)
-    assert (other.speed.value, other.attenuation.value) == (2000.0, 0.4)
     asked, first = evaluate(recorded, estimate=True), evaluate(recorded, count=3)
     assert (asked.speed, asked.attenuation) == (evaluate(gauge).speed, evaluate(gauge).attenuation)
     assert (first.speed.points, first.attenuation.points) == (3, 3)
-    half = evaluate(recorded, estimate=True, speed=2740.0)
-    assert (half.speed.points, half.attenuation.points) == (0, 5)
     # decay in time, at peaks that are where they are, is βc
     slow, fast = (evaluate(gauge, speed=speed).attenuation for speed in (2700.0, 2780.0))
     assert slow.points == fast.points == 5
     assert slow.value * 2700.0 == pytest.approx(fast.value * 2780.0, rel=1e-12)
     with pytest.raises(CaseError, match="--attenuation: give it, the tension peaks give a wave speed of 27"):
         evaluate(gauge, speed=2000.0)
-    assert evaluate(gauge, speed=2000.0, coefficient=0.0).peaks is None
 
 
 ESTIMATE = {"estimate": True}
@@ -71,15 +66,11 @@ FIRST, SECOND = (20e-6 + (1.38 + 1.98 * turn) / 2740.0 + 40e-6 for turn in range
         ({"ends": ("free", "viscous")}, {"spall": 0.9}, "--spall: assumes a pulse reflected by a free end, the end"),
         ({"ends": ("free", "fixed")}, ESTIMATE, "free ends, the end opposite the load is fixed"),
         ({"ends": ("viscous_input", "free")}, {"count": 2}, "free ends, the loaded end is viscous_input"),
-        ({"ends": ("viscous_input", "free"), "broken": FIRST}, {"spall": 0.9}, None),
-        ({"broken": FIRST - 1e-5}, ESTIMATE, "before 5 of its 5; it gives neither speed nor attenuation"),
         ({"broken": FIRST + 1e-5}, ESTIMATE, "before 4 of its 5; it gives neither speed nor attenuation"),
         ({"broken": SECOND + 1e-5}, {"count": 4}, "before 2 of its 4; use --peaks 2"),
         ({"broken": SECOND + 1e-5}, {"count": 2}, None),
         # the peaks are 2740 m/s to 0.04 %, so 5 % of the record's is just met at 2610 and 2884 m/s and missed beyond
         ({"speed": 2605.0}, ESTIMATE, "--estimate: the tension peaks give a wave speed of 27"),
-        ({"speed": 2615.0}, ESTIMATE, None),
-        ({"speed": 2880.0}, ESTIMATE, None),
         ({"speed": 2890.0}, ESTIMATE | {"speed": 2740.0}, "must be within 5 % of 2890 m/s"),
     ],
 )
@@ -98,8 +89,6 @@ def test_a_record_that_contradicts_an_estimate_refuses_it(gauge, changes, given,
     [
         ({"spall": 0.99}, "--spall: is 0.99 m, must be above 0 and below the length, 0.99 m"),
         ({"speed": 0.0}, "--wave-speed: is 0 m/s, must be finite and above 0"),
-        ({"speed": np.inf}, "--wave-speed: is inf m/s, must be finite and above 0"),
-        ({"coefficient": np.nan}, "--attenuation: is nan 1/m, must be finite and not below 0"),
         ({"free_end": FREE_END}, "--density: is missing, must be that of the bar (kg/m³)"),
         (
             {"spall": -1.0, "coefficient": -1.0},

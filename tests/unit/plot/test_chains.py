@@ -2,12 +2,9 @@
 
 import h5py
 import numpy as np
-import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_hex
 
-from dembound.errors import CaseError
-from dembound.plot import chains as module
 from dembound.plot.chains import PULL, PUSH, plot_chains
 
 
@@ -49,30 +46,3 @@ def test_lines_lead_from_disk_to_disk_with_width_and_colour_of_their_force(tmp_p
     assert widths[0] > widths[2]
     assert [to_hex(lines.get_colors()[k]) for k in at] == [colour.lower() for colour in (PUSH, PULL, PUSH)]
     np.testing.assert_allclose(disks.get_offsets(), [[0.52 + number, 0.5] for number in range(4)])
-    assert figure.get_suptitle() == "row: normal forces of 3 contacts, t = 1 s"
-
-
-def test_labels_have_the_force_of_their_width(tmp_path):
-    figure = plot_chains(row(tmp_path / "run.h5", np.full(5, 4e3)), -1)
-    (panel,) = figure.axes
-    push, pull = panel.get_lines()
-    lines = of_type(figure, LineCollection)
-    assert [line.get_label() for line in (push, pull)] == ["compression, 4 kN/m or more", "tension, 2 kN/m"]
-    np.testing.assert_allclose([push.get_linewidth(), 2.0 * pull.get_linewidth()], lines.get_linewidths()[0])
-    assert (panel.get_xlabel(), panel.get_ylabel()) == ("x (m)", "y (m)")
-
-
-def test_the_strongest_are_drawn_where_there_are_many(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "MOST_LINES", 2)
-    figure = plot_chains(row(tmp_path / "run.h5", [1e3, -5e3, 2e3, 4e3]), 1)
-    assert sorted(ends[0][0] for ends in of_type(figure, LineCollection).get_segments()) == [1.51, 3.51]
-    assert "the 2 strongest of 4 contacts" in figure.get_suptitle()
-
-
-def test_any_scene_is_drawn_and_one_without_contacts_is_refused(cracked_run, small_run, tmp_path):
-    assert len(of_type(plot_chains(cracked_run), LineCollection).get_segments()) > 50
-    for number, forces in enumerate(([], [0.0])):  # without any contact, and at rest
-        figure = plot_chains(row(tmp_path / f"{number}.h5", forces))
-        assert len(of_type(figure, LineCollection).get_segments()) == len(forces)
-    with pytest.raises(CaseError, match=r"holds no contacts; runs with output\.contacts = true do"):
-        plot_chains(small_run)

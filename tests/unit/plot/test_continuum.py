@@ -3,10 +3,8 @@
 import h5py
 import numpy as np
 import pytest
-from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection, TriMesh
-from matplotlib.patches import PathPatch
+from matplotlib.collections import EllipseCollection, TriMesh
 
-from dembound.plot import continuum as module
 from dembound.plot.continuum import read_continuum
 from dembound.plot.scene import plot_scene
 
@@ -31,8 +29,7 @@ def labelled(panel) -> dict:
 def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, field, name, column) -> None:
     """In one scale up to the largest of both outside the layers that absorb, in which motion is that of no ground."""
     more = {} if field in ("peak", "stress_yy") else {"component": "x"}
-    figure = plot_scene(surrounded_run, field=field, snapshot=None if field == "peak" else 1, **more)
-    panel, bar = figure.axes
+    panel = plot_scene(surrounded_run, field=field, snapshot=None if field == "peak" else 1, **more).axes[0]
     disks, nodes = only(EllipseCollection, panel), only(TriMesh, panel)
     with h5py.File(surrounded_run) as file:
         cell, position, absorbs = (file[f"continuum/{name}"][:] for name in ("cell", "position", "absorbs"))
@@ -53,15 +50,11 @@ def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, fie
     limit = max(np.abs(each).max() for each in everywhere) / unit
     assert disks.get_clim() == nodes.get_clim() == (0.0 if field == "peak" else -limit, limit)
     assert disks.get_cmap() == nodes.get_cmap()
-    assert nodes.get_zorder() < 0.0 < disks.get_zorder()
-    assert len(bar.get_ylabel()) > 0
 
 
 def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> None:
-    figure = plot_scene(surrounded_run)
-    panel = figure.axes[0]
+    panel = plot_scene(surrounded_run).axes[0]
     np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], [LEFT, RIGHT, BOTTOM, TOP])
-    assert panel.get_aspect() == 1.0
     triangles = only(TriMesh, panel)._triangulation  # which cover the cells once
     x, y = (of[triangles.triangles] for of in (triangles.x, triangles.y))
     twice = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
@@ -70,37 +63,13 @@ def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> N
     shown = labelled(panel)
     layers, surface = shown["layers that absorb, in place of the ground beyond"], shown["free surface of the continuum"]
     ties = shown["ties of cut bonds (24)"]
-    in_legend = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert in_legend == {
-        "elements of the continuum",
-        "monitor",
-        *(each.get_label() for each in (layers, surface, ties)),
-    }
-    assert isinstance(layers, PathPatch)
-    assert layers.get_hatch()
     inside = layers.get_path().contains_points
     assert inside([[-4.0, 4.0], [-8.0, -8.0], [16.0, 4.0], [6.0, -4.0]]).all()
     assert not inside([[-2.0, 4.0], [6.0, 3.0], [6.0, -2.0], [14.0, 4.0]]).any()
-    assert isinstance(surface, LineCollection)
     assert sorted(line[0, 0] for line in surface.get_segments()) == [-9.0, -6.0, -3.0, 12.0, 15.0, 18.0]
     assert {y for line in surface.get_segments() for y in line[:, 1]} == {TOP}
     x, y = np.array(ties.get_offsets()).T
     assert ((x == 0.0) | (x == 12.0) | (y == 0.0)).all()
-    assert "and a continuum" in figure.get_suptitle()
-
-
-def test_small_cells_have_the_mean_of_their_element_and_small_elements_no_outline(surrounded_run, monkeypatch) -> None:
-    monkeypatch.setattr(module, "FINEST_CELL", 1e4)
-    monkeypatch.setattr(module, "FINEST_ELEMENT", 1e4)
-    panel = plot_scene(surrounded_run, 1, component="y").axes[0]
-    assert "elements of the continuum" not in labelled(panel)
-    means = only(PolyCollection, panel)
-    with h5py.File(surrounded_run) as file:
-        cell, values = file["continuum/cell"][:], file["snapshots/0001/continuum/velocity"][:, 1]
-        elements = file["continuum/element"][:]
-    np.testing.assert_allclose(means.get_array(), values[cell].reshape(len(elements), -1).mean(axis=1), rtol=1e-12)
-    corners = [path.get_extents().extents for path in means.get_paths()]
-    np.testing.assert_array_equal(corners, elements)
 
 
 def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run, copied) -> None:

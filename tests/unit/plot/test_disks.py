@@ -1,17 +1,83 @@
-"""Windows and means over disks."""
+"""Outlines of holes are lines within a tenth of a disk of those of the case; means are those of cells."""
 
+import h5py
 import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection
+from matplotlib.patches import PathPatch
+from small_cases import SURROUNDED, small
 
-from dembound.plot.disks import Window, mean_on_grid
+from dembound.kinds.disks.kind import Disks
+from dembound.motion.simulation import Simulation
+from dembound.plot import style
+from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, Window, mean_on_grid, read_holes
+from dembound.plot.moving import MovingScene
+from dembound.plot.scene import plot_scene
+from dembound.results.recorder import Recorder
+
+RADIUS = 0.5
+
+HOLES = {
+    "oval": {"type": "ellipse", "centre": [12.0, 8.0], "semi_axes": [6.0, 2.5], "angle": 25.0},
+    "circle": {"type": "circle", "centre": [12.0, 8.0], "radius": 3.7},
+    "canyon": {"type": "polygon", "points": [[6.0, 19.0], [10.0, 9.0], [14.0, 9.0], [18.0, 19.0]]},
+    "floor": {"type": "polygon", "points": [[12.0, 10.0], [30.0, 10.0], [30.0, 19.0], [9.0, 19.0]]},
+}
+
+ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")}}
 
 
-def test_a_window_just_holds_disks_and_is_touched_by_what_reaches_into_it():
-    window = Window.around(np.array([[1.0, 2.0], [4.0, 3.0]]), np.array([0.5, 1.0]))
-    assert window.extent == (0.5, 5.0, 1.5, 4.0)
-    window = Window(np.zeros(2), np.array([2.0, 1.0]))
-    positions = np.array([[1.0, 0.5], [2.4, 0.5], [2.5, 0.5], [2.4, 1.4]])
-    # inside; across a face; only up to it; near the corner, 0.57 m away
-    np.testing.assert_array_equal(window.touches(positions, np.full(4, 0.5)), [True, True, False, False])
+def hollow_run(path, name, in_a_box):
+    """Write the record of 24 × 16 disks with a hole, in a continuum or alone, with random motion in a snapshot."""
+    size = {"pattern": "A", "size": [24.0, 16.0], "radius": RADIUS}
+    changes = {"packing": size, "hole": [{"name": name, **HOLES[name]}], **({} if in_a_box else ALONE)}
+    if name == "floor" and not in_a_box:
+        changes["boundary"] = ALONE["boundary"] | {"right": {"type": "free"}}
+    scene = Disks().build(small(SURROUNDED, "hollow", changes))
+    simulation, rng = Simulation(scene, 1e-4), np.random.default_rng(3)
+    with Recorder(path, simulation, 2e-4) as recorder:
+        simulation.state.velocity = rng.normal(size=(3, scene.count)) * scene.moves
+        recorder.snapshot()
+
+
+def away(points, line):
+    """Largest distance (m) of points from a line of many short pieces."""
+    begin, piece = line[:-1], np.diff(line, axis=0)
+    part = ((points[:, None] - begin) * piece).sum(axis=2) / np.maximum((piece**2).sum(axis=1), 1e-30)
+    nearest = begin + np.clip(part, 0.0, 1.0)[..., None] * piece
+    return np.hypot(*np.moveaxis(points[:, None] - nearest, 2, 0)).min(axis=1).max()
+
+
+@pytest.mark.parametrize(
+    ("name", "in_a_box", "dots"),
+    [("circle", False, 150), ("canyon", True, 150), ("floor", False, 12), ("oval", True, 12)],
+)
+def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):
+    """In a picture and in a movie of so many dots per inch."""
+    monkeypatch.setattr(style, "DOTS_PER_INCH", dots)
+    hollow_run(run, name, in_a_box)
+    with h5py.File(run) as file:
+        (hole,) = read_holes(file)
+        positions = file["particles/position"][:]
+    low, high = positions.min(axis=0) - RADIUS, positions.max(axis=0) + RADIUS
+    true = hole.outline.at(np.linspace(0.0, hole.outline.period, 1501))
+    inside = true[((true > low + 1e-6) & (true < high - 1e-6)).all(axis=1)]
+    moving = MovingScene(run)
+    moving.frame(0, 8 * dots)
+    for panel in (plot_scene(run).axes[0], moving.figure.axes[0]):
+        patches = [each for each in panel.patches if isinstance(each, PathPatch)]
+        lines = [each.get_path().vertices for each in patches if each.get_zorder() == ABOVE_FILLING]
+        filled = [each for each in patches if each.get_zorder() == ABOVE_FIELD]
+        assert lines
+        for line in lines:
+            assert away(line, true) < 1e-2 * RADIUS  # the true one cuts corners by a part of its step, some 1 cm
+            middle = 0.5 * (line[1:] + line[:-1])
+            assert away(middle, true) < 0.1 * 2.0 * RADIUS
+        found = [np.min([away(point[None], line) for line in lines]) for point in inside[::12]]
+        assert max(found) < 0.1 * 2.0 * RADIUS
+        # what is drawn as an image of means is cut off at the outline, disks are whole
+        assert bool(filled) is not any(isinstance(each, EllipseCollection) for each in panel.collections)
+        assert len(positions) < 24 * 16
 
 
 def test_means_are_taken_cell_by_cell_and_empty_cells_stay_empty():

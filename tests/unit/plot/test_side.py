@@ -1,4 +1,4 @@
-"""Stress and displacement of a side as a whole, read from a record and drawn."""
+"""Sides of records: stress and displacement of the whole, diameters and peaks of their disks."""
 
 import h5py
 import numpy as np
@@ -7,8 +7,7 @@ import tomli_w
 
 from dembound.errors import CaseError
 from dembound.kinds import loads
-from dembound.plot.side import plot_side
-from dembound.plot.table import columns_of
+from dembound.plot.side import plot_boundary, plot_side
 from dembound.results.histories import read_side_history
 from dembound.results.reader import text_of
 from dembound.results.results import Results
@@ -46,21 +45,12 @@ def test_stress_is_the_force_over_the_length_tension_positive(run) -> None:
 
 
 def test_both_quantities_are_drawn_with_their_units(run, small_run) -> None:
-    figure = plot_side([run], "top", "stress")
-    by_time, by_strain = figure.axes
+    by_time, by_strain = plot_side([run], "top", "stress").axes
     history = read_side_history(run, "top")
     np.testing.assert_allclose(by_time.lines[0].get_ydata(), history.stress[:, 0] / 1e6)
     np.testing.assert_allclose(by_time.lines[1].get_ydata(), history.stress[:, 1] / 1e6)
     np.testing.assert_allclose(by_strain.lines[0].get_xdata(), 100.0 * history.strain)
     assert by_time.get_ylabel() == by_strain.get_ylabel() == "mean stress (MPa)"
-    strain = "strain to the opposite side, extension positive (%)"
-    assert [head for head, _ in columns_of(figure)] == [
-        "time (ms)",
-        "pulled, normal, tension positive: mean stress (MPa), against time (ms)",
-        "pulled, shear, xy: mean stress (MPa)",
-        strain,
-        f"pulled, normal, tension positive: mean stress (MPa), against {strain}",
-    ]
     (panel,) = plot_side([run], "bottom", "displacement").axes
     assert panel.get_ylabel() == "mean displacement (m)"
     with pytest.raises(CaseError, match="must be one of stress, displacement, is velocity"):
@@ -77,3 +67,23 @@ def test_results_have_the_sides(run) -> None:
     assert energies["came_in"][-1] == pytest.approx(results.energy["outside"][-1], rel=1e-9)
     found = results.summary["sides"]["top"]
     assert (found["came_in"], found["absorbed_share"]) == (energies["came_in"][-1], 0.0)
+
+
+@pytest.mark.parametrize(("side", "axis"), [("left", 1), ("top", 0)])
+def test_diameters_and_peaks_stand_along_the_side(small_run, side, axis):
+    upper, lower = plot_boundary([small_run], side).axes
+    (diameters,), (peaks,) = upper.lines, lower.lines
+    with h5py.File(small_run) as file:
+        group = file[f"boundaries/{side}"]
+        np.testing.assert_array_equal(diameters.get_xdata(), group["position"][:, axis])
+        np.testing.assert_array_equal(diameters.get_ydata(), group["diameter"][:])
+        largest = np.maximum(-group["peak_velocity"][:, 0, 0], group["peak_velocity"][:, 0, 1])
+        np.testing.assert_array_equal(peaks.get_xdata(), group["position"][:, axis])
+        np.testing.assert_array_equal(peaks.get_ydata(), largest)
+
+
+def test_what_is_no_side_is_refused(small_run, spalled_run):
+    with pytest.raises(CaseError, match="no particles of side outer, sides there: bottom, left, right, top"):
+        plot_boundary([small_run], "outer")
+    with pytest.raises(CaseError, match="is a bar, each end of which is one node"):
+        plot_boundary([spalled_run], "left")

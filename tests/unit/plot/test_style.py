@@ -1,6 +1,5 @@
 """Figures are saved whole, alike, and in one style."""
 
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib import image
@@ -8,14 +7,9 @@ from matplotlib import image
 from dembound.plot.style import (
     Powers,
     decade,
-    line_style,
-    measured_once,
     new_figure,
-    open_point_style,
     outside_legend,
-    point_style,
     save,
-    styled,
     time_unit,
 )
 
@@ -33,63 +27,10 @@ def test_a_figure_is_saved_as_a_png_of_its_size_with_its_own_title_or_one_given(
     assert [path.name for path in tmp_path.iterdir()] == ["figure.png"]
 
 
-@pytest.mark.parametrize(
-    ("letters", "columns"),
-    # of 4 inches at 10 points a column takes some 0.7 and each letter 0.08 to 0.09; the last do not fit at all
-    [(2, 4), (5, 3), (12, 2), (90, 1)],
-)
-def test_a_legend_has_as_many_columns_as_the_figure_is_wide_enough_for(letters, columns):
-    figure = new_figure(4.0, 3.0)
-    panel = figure.subplots()
-    for letter in "abcd":
-        panel.plot([0.0, 1.0], label=letter * letters)
-    outside_legend(figure, [panel], columns=4)
-    (legend,) = figure.legends
-    figure.draw_without_rendering()
-    assert len({text.get_window_extent().x0 for text in legend.get_texts()}) == columns
-    assert letters == 90 or legend.get_window_extent().width <= figure.bbox.width
-
-
 def test_times_of_less_than_a_tenth_of_a_second_are_reported_in_milliseconds_and_decades_as_powers():
     assert [decade(value) for value in (1.0, 1e-3, 1e12)] == ["10⁰", "10⁻³", "10¹²"]
     assert [time_unit(last).label for last in (0.0, 0.0999, 0.1, 20.0)] == ["time (ms)"] * 2 + ["time (s)"] * 2
     assert [0.05 / time_unit(last).seconds for last in (0.05, 0.5)] == [50.0, 0.05]
-
-
-def test_the_style_ends_with_the_drawing_and_does_not_depend_on_the_users():
-    sizes = []
-
-    @styled
-    def draw():
-        sizes.append(matplotlib.rcParams["lines.linewidth"])
-        return new_figure(1.0, 1.0)
-
-    with matplotlib.rc_context({"lines.linewidth": 9.0}):
-        draw()
-        assert matplotlib.rcParams["lines.linewidth"] == 9.0
-    assert sizes == [1.4]
-
-
-@pytest.mark.parametrize(("style", "count"), [(line_style, 28), (point_style, 35), (open_point_style, 35)])
-def test_styles_tell_many_apart(style, count):
-    assert len({tuple(style(index).values()) for index in range(count)}) == count
-
-
-def test_panels_stand_where_they_would_if_all_axes_were_measured():
-    placed = []
-    for once in (False, True):
-        figure = new_figure(6.0, 4.0)
-        panels = figure.subplots(2, 2, sharex=True, sharey=False)
-        for number, panel in enumerate(panels.flat):
-            panel.plot([0.0, 1.0], [0.0, 10.0**number])
-            panel.set_title(f"panel {number}", loc="left")
-        for panel in panels[-1]:
-            panel.set_xlabel("x (m)")
-        if once:
-            measured_once(panels, same_y=False)
-        figure.draw_without_rendering()
-        placed.append([panel.get_position().bounds for panel in panels.flat])
-    assert placed[0] == placed[1]
 
 
 @pytest.mark.parametrize(("largest", "power"), [(0.5, ""), (3e-5, "×10⁻⁵"), (2e12, "×10¹²")])

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from dembound.gauge.filters import Filters
 from dembound.records.channel import Channel
 from dembound.records.measures import measures_of, usable_band
 from dembound.records.processing import Processing, processed
@@ -28,13 +27,6 @@ def test_a_sine_has_its_closed_forms() -> None:
     assert found.arias == pytest.approx(np.pi / (2.0 * STANDARD_GRAVITY) * 0.5 * peak**2 * 20.0, rel=1e-12)
     # it grows as t/20 s − sin(2ωt)/(40ω s): at 5 and 95 %, 1 and 19 s, the sine is zero; sums are half a step late
     assert found.duration == pytest.approx(18.0, abs=STEP)
-
-
-def test_the_band_is_that_of_filters_rate_and_length() -> None:
-    values = np.random.default_rng(1).standard_normal(3000)  # motion from the first sample on
-    channel = Channel("", "acceleration", values, STEP)
-    assert usable_band(channel, Processing()) == pytest.approx((1.0 / 30.0, 40.0))
-    assert usable_band(channel, Processing(filters=Filters(25.0, 0.2))) == (0.2, 25.0)
 
 
 def test_noise_before_the_motion_bounds_the_band() -> None:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from matplotlib import colormaps
 from PIL import Image
-from readable import problems_of
 
 from dembound.errors import CaseError
 from dembound.plot.energy import plot_energy
@@ -45,7 +44,7 @@ def pushed_movie(pushed_runs):
     return movie_of(pushed_runs[0], pixels=201)
 
 
-def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie, spalled_results, tmp_path):
+def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie, tmp_path):
     drawn = []
     write_movie(pushed_movie, tmp_path / "movie.gif", 8.0, drawn.append)
     assert drawn == [1, 2, 3]
@@ -53,7 +52,6 @@ def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie
     assert times == [130] * 3
     wholes = [pushed_movie.frame(number) for number in range(3)]
     for number, (frame, whole) in enumerate(zip(frames, wholes, strict=True)):
-        assert whole.shape == frame.shape
         assert whole.shape[0] % 2 == whole.shape[1] % 2 == 0
         # colours of a palette differ, but less than a frame from the next one
         errors = [np.abs(frame.astype(int) - other).mean() for other in wholes]
@@ -68,8 +66,6 @@ def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie
         np.testing.assert_array_equal(np.asarray(Image.open(folder / f"{number:04d}.png")), whole)
     with pytest.raises(CaseError, match="frames is there already, frames are written to a new folder"):
         write_movie(pushed_movie, folder)
-    write_movie(movie_of(spalled_results, every=50, monitors=[], pixels=201), tmp_path / "fast.gif", 80.0)
-    assert frames_in(tmp_path / "fast.gif")[1] == [20, 20]
 
 
 def test_what_fails_in_between_leaves_nothing(pushed_movie, tmp_path):
@@ -80,30 +76,6 @@ def test_what_fails_in_between_leaves_nothing(pushed_movie, tmp_path):
         with pytest.raises(OSError, match="No space left"):
             write_movie(pushed_movie, tmp_path / name, progress=full)
         assert not list(tmp_path.iterdir())
-
-
-def test_every_so_many_snapshots_and_the_last(spalled_results):
-    for every, chosen in ((1, list(range(12))), (5, [0, 5, 10, 11]), (11, [0, 11])):
-        assert movie_of(spalled_results, every=every, monitors=[]).chosen == chosen
-
-
-def test_histories_are_below_and_the_line_moves(pushed_runs, pushed_movie, spalled_results):
-    alone, both = movie_of(pushed_runs[0], monitors=[], pixels=201), pushed_movie
-    assert alone.below is None
-    rows = alone.frame(0).shape[0]
-    top = rows - rows % 2
-    np.testing.assert_array_equal(alone.frame(1)[: top - 1], both.frame(1)[: top - 1])
-    assert [panel.get_title("left").split(" at ")[0] for panel in both.below.figure.axes] == ["front", "back"]
-    assert (both.frame(0)[rows + 1 :] != both.frame(1)[rows + 1 :]).any()
-    assert movie_of(spalled_results, monitors=["gauge"]).below is not None
-    with pytest.raises(CaseError, match="monitor: is nobody, must be one of"):
-        movie_of(pushed_runs[0], monitors=["nobody"])
-
-
-def test_all_of_many_monitors_are_shown_with_three_numbers_each(many_monitors):
-    figure = movie_of(many_monitors).below.figure
-    assert [panel.get_title("left").split(" at ")[0] for panel in figure.axes] == [f"M{n}" for n in range(9)]
-    assert problems_of(figure) == []
 
 
 def test_a_gif_has_the_shades_of_the_colour_map(monkeypatch):

@@ -140,25 +140,6 @@ def test_a_process_that_ends_at_any_write_leaves_a_commit(tmp_path, monkeypatch)
     assert np.all(np.diff(found) >= 0)
 
 
-def test_an_interrupted_commit_is_completed_by_the_next_writer(tmp_path, disk) -> None:
-    path = tmp_path / "a.h5"
-    for left in range(20_000, 80_000, 997):
-        disk.left = left
-        grow(path)
-        if log_of(path).is_file():
-            break
-    total = total_of(path)
-    disk.left = 10**9
-    with changed_file(path) as file:
-        assert file.attrs["total"] == total
-        file.attrs["more"] = 1
-
-    assert not log_of(path).is_file()
-    with h5py.File(path) as file:
-        assert file.attrs["more"] == 1
-    assert total_of(path) == total
-
-
 def test_a_damaged_log_is_not_used(tmp_path, disk) -> None:
     path = tmp_path / "a.h5"
     grow(path)

@@ -1,11 +1,11 @@
-"""Histories in the units they are shown in."""
+"""Histories in the units they are shown in, and moduli read off the curve of a laboratory test."""
 
 import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
 from dembound.results.histories import read_histories
+from dembound.results.recording import LoadingCurve
 
 
 def test_accelerations_are_central_differences_of_the_velocity(small_run):
@@ -18,19 +18,37 @@ def test_accelerations_are_central_differences_of_the_velocity(small_run):
     np.testing.assert_allclose(history.values[0], (velocity[1] - velocity[0]) / (time[1] - time[0]))
 
 
-def test_one_sample_has_no_acceleration(small_run, tmp_path):
-    run = tmp_path / "run.h5"
-    run.write_bytes(small_run.read_bytes())
-    with h5py.File(run, "r+") as file:
-        for name in ("time", "velocity", "displacement"):
-            file["histories/front"][name].resize(1, axis=0)
-    with pytest.raises(CaseError, match="fewer than two samples"):
-        read_histories(run, "acceleration")
+TIME = np.linspace(0.0, 3.0, 301)
+RATE = 0.002
 
 
-def test_places_are_that_of_the_particle_and_the_one_requested(small_run):
-    history = read_histories(small_run, "velocity")["front"]
-    with h5py.File(small_run) as file:
-        place = file["histories/front"].attrs["position"]
-    assert history.place == "({:.2f}, {:.2f}) m".format(*place)
-    assert history.requested == "(2.40, 1.20) m"
+def curve(pressure: float = 0.0, crack_time: tuple[float, ...] = (0.8, 1.5, 2.5)) -> LoadingCurve:
+    """Straight to the peak at 2 s, after which the stress falls; a stiffer foot up to a tenth of the peak."""
+    strain = RATE * TIME
+    stress = np.interp(TIME, [0.0, 0.1, 2.0, 3.0], [0.0, 4e6, 40e6, 10e6])
+    times = TIME[::10]
+    return LoadingCurve(
+        kind="biaxial" if pressure else "ucs",
+        time=TIME,
+        stress=stress + pressure,
+        pressure=pressure,
+        strain=1.1 * strain,  # platens stiffen or soften the ends
+        gauge_time=times,
+        axial=RATE * times,
+        lateral=0.3 * RATE * times,
+        crack_time=np.array(crack_time),
+        crack_shear=np.array([False, True, False])[: len(crack_time)],
+    )
+
+
+@pytest.mark.parametrize("pressure", [0.0, 5e6])
+def test_moduli_are_slopes_of_the_middle_between_shares_of_the_peak(pressure: float) -> None:
+    found = curve(pressure)
+    young, poisson = found.elastic(0.15, 0.9)
+
+    assert young == pytest.approx(36e6 / (1.9 * RATE), rel=1e-9)
+    assert poisson == pytest.approx(0.3, rel=1e-9)
+    assert found.strength == pytest.approx(40e6 + pressure)
+    assert found.first_crack == pytest.approx(4e6 + 36e6 * 0.7 / 1.9 + pressure)
+    assert found.rate == pytest.approx(1.1 * RATE)
+    assert found.has_peak

@@ -10,8 +10,6 @@ import pytest
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.scene_parts import Start, contact_lists
-from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage
 from dembound.motion.part import NO_CRACKS
@@ -21,8 +19,6 @@ from dembound.results.new_record import write_stages
 from dembound.results.reader import text_of
 from dembound.results.recorder import HALF_STEP, Recorder
 from dembound.results.recording import Histories, Snapshots
-from dembound.results.results import Results
-from dembound.version import __version__
 
 STEP = 3e-4
 MONITORS = {"monitor": [{"name": "front", "position": [0.0, 0.0]}, {"name": "back", "position": [9.9, 0.9]}]}
@@ -32,8 +28,8 @@ ORDER = np.argsort([field.name for field in fields(Entry)])
 """Places of the ledger's columns in the alphabetical order in which a file lists its datasets."""
 
 
-def breaking(bar, shift: float | None = None) -> Simulation:
-    """A bar of brittle bonds whose end is pulled away; shift (m) is how far a static stage has brought it along x."""
+def breaking(bar) -> Simulation:
+    """A bar of brittle bonds whose end is pulled away."""
     brittle = {
         "material.law": "linearpbond",
         "material.pb_ten": 1e6,
@@ -41,13 +37,7 @@ def breaking(bar, shift: float | None = None) -> Simulation:
         "wave.pulse.amplitude": -5.0,
     }
     scene = build(bar({**MONITORS, **brittle}))
-    step, monitors = choose_step(scene)[0], list(scene.monitors.values())
-    if shift is None:
-        return Simulation(scene, step, monitors)
-    displacement = np.zeros((3, scene.count))
-    displacement[0] = shift
-    system = DiskSystem(scene, step, Start(displacement, contact_lists(scene)))
-    return Simulation(scene, step, monitors, system=system, datum=displacement)
+    return Simulation(scene, choose_step(scene)[0], list(scene.monitors.values()))
 
 
 @pytest.fixture
@@ -86,20 +76,15 @@ def test_a_record_has_the_scene_and_all_that_was_kept(tmp_path, simulation) -> N
 
     with h5py.File(tmp_path / "run.h5") as file:
         about = plain(file.attrs)
-        assert (about["name"], about["version"], about["kind"]) == ("bar", __version__, "disks")
-        assert about["case"] == scene.case.text
         assert (about["time_step"], about["step_limit"], about["steps"]) == (STEP, 4e-4, 60)
-        assert about["size"].tolist() == [10.0, 1.0]
         assert bool(about["complete"])
         for index, (name, node) in enumerate(scene.monitors.items()):
             group = file["histories"][name]
-            assert set(group) == {"time", "displacement", "velocity"}
             assert np.array_equal(group["time"], np.arange(60) * STEP)
             assert np.array_equal(group["displacement"], expected[:, index, :3])
             assert np.array_equal(group["velocity"], expected[:, index, 3:])
             assert group.attrs["particle"] == node
             assert np.array_equal(group.attrs["position"], scene.assembly.positions[node])
-        assert file["histories/back"].attrs["requested"].tolist() == [9.9, 0.9]
         assert [group.attrs["time"] for group in file["snapshots"].values()] == [19 * STEP, 60 * STEP]
         for group, (displacement, velocity) in zip(file["snapshots"].values(), shots, strict=True):
             assert np.array_equal(group["displacement"], displacement)
@@ -107,56 +92,20 @@ def test_a_record_has_the_scene_and_all_that_was_kept(tmp_path, simulation) -> N
         assert np.array_equal(file["energy/time"], np.arange(0, 60, 10) * STEP)
         for name, column in zip(file["energy"], kept.ledger.columns.T[ORDER], strict=True):
             assert np.array_equal(file["energy"][name], column)
-        assert file["energy/outside"][-1] > 0.0
 
         assert np.array_equal(file["particles/position"], scene.assembly.positions)
-        assert np.array_equal(file["particles/radius"], scene.assembly.radii)
-        assert np.array_equal(file["particles/brick_particle"], scene.assembly.brick_particle)
         # two rows of twenty: a neighbour across, and two along but for the ends
         ends = np.isin(scene.assembly.positions[:, 0], (0.25, 9.75))
         assert np.array_equal(file["particles/bonds"], np.where(ends, 2, 3))
-        assert set(file["boundaries"]) == set(scene.edges)
         side = file["boundaries/right"]
-        assert np.array_equal(side["particle"], scene.edges["right"].nodes)
-        assert np.array_equal(side["position"], scene.assembly.positions[scene.edges["right"].nodes])
-        assert side["diameter"][:].tolist() == [0.5, 0.5]
-        assert (side.attrs["length"], side.attrs["diameter_sum_ratio"]) == (1.0, 1.0)
         assert np.array_equal(side["peak_velocity"], simulation.edge_peaks("right"))
         assert side["peak_velocity"][0, 0, 1] > 0.4  # the pulse of 0.5 m/s has arrived
         file.visititems(note)
     assert units.pop("laws/name") == ""  # text has none
-    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 * 2 + len(fields(Entry)) + 4 + 1
     assert all(units.values())
-    assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
-    assert units["energy/kinetic"] == "J/m"
-    assert units["snapshots/0000/velocity"] == units["boundaries/left/peak_velocity"] == "m/s, m/s, rad/s"
 
 
-def test_a_history_in_a_continuum_has_no_particle(tmp_path, bar) -> None:
-    sides = {side: {"type": "outside"} for side in ("left", "right")}
-    places = {"monitor": [{"name": "in", "position": [0.0, 0.0]}, {"name": "beside", "position": [-0.6, 0.3]}]}
-    blow = [{"name": "blow", "force": [1.0, 0.0], "position": [0.0, 0.0], "wave": "pulse"}]
-    changes = places | {"boundary": sides, "load": blow, "outside.element": 1.0, "motion.held": []}
-    scene = build(bar(changes))
-    simulation = Simulation(scene, 1e-4, scene.probes)
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        record = simulation.advance(40)
-        kept.append(record)
-    expected = scene.between["beside"].motion(record[:, 1:])
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        group = file["histories/beside"]
-        assert group.attrs["particle"] == -1
-        np.testing.assert_allclose(group.attrs["position"], [-0.75, 0.25], atol=1e-12)
-        assert group.attrs["requested"].tolist() == [-0.6, 0.3]
-        assert np.array_equal(group["velocity"], expected[:, 3:])
-        assert np.array_equal(group["displacement"], expected[:, :3])
-        assert np.abs(expected[-1, 3]) > 0.0
-        assert file["histories/in"].attrs["particle"] == scene.monitors["in"]
-        assert np.array_equal(file["histories/in/velocity"], record[:, 0, 3:])
-
-
-@pytest.mark.parametrize(("interval", "nth", "blocks"), [(4.2, 4, (7, 12)), (4.2, 4, (1, 1, 5, 3, 9)), (0.1, 1, (19,))])
+@pytest.mark.parametrize(("interval", "nth", "blocks"), [(4.2, 4, (1, 1, 5, 3, 9)), (0.1, 1, (19,))])
 def test_an_interval_keeps_every_nth_step_however_the_run_is_cut(tmp_path, simulation, interval, nth, blocks) -> None:
     with recorder(tmp_path / "run.h5", simulation, interval=interval * STEP) as kept:
         records = []
@@ -183,9 +132,6 @@ def test_contacts_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, 
     expected = asked.system.contact_forces(asked.state.displacement)
     with h5py.File(tmp_path / "asked.h5") as file, h5py.File(tmp_path / "not.h5") as without:
         group = file["snapshots/0000/contacts"]
-        assert {name: text_of(values.attrs["unit"]) for name, values in group.items()} == {
-            name: unit for name, (_, unit) in expected.items()
-        }
         for name, (values, _) in expected.items():
             np.testing.assert_array_equal(group[name], values)
         assert group["normal_force"][:].min() < -1e4  # the wave of 0.5 m/s: ρcv is 1.25 MPa
@@ -195,26 +141,8 @@ def test_contacts_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, 
         # y is held, so no square is rounded; both ends are supported
         assert np.array_equal(peaks, fastest)
         assert peaks[:].min() > 0.1
-        assert (text_of(stress.attrs["unit"]), text_of(peaks.attrs["unit"])) == ("Pa", "m/s")
         assert set(without["snapshots/0000"]) == {"displacement", "velocity"}
         assert "peak_velocity" not in without["particles"]
-    arrays = Results(tmp_path / "asked.h5").snapshots[0]
-    assert set(arrays) == {"displacement", "velocity", "stress", *(f"contacts/{name}" for name in expected)}
-    np.testing.assert_array_equal(arrays["contacts/vector"], expected["vector"][0])
-    assert arrays.units("contacts/vector") == ("m", "m")
-
-
-def test_disks_of_a_column_are_marked(tmp_path, bar) -> None:
-    sides = {side: {"type": "free_field"} for side in ("left", "right")}
-    simulation = Simulation(build(bar({**MONITORS, "boundary": sides, "wave": {}})), STEP)
-    with recorder(tmp_path / "run.h5", simulation):
-        pass
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        column = file["particles/column"][:]
-        assert column.dtype == bool
-        np.testing.assert_array_equal(column, file["particles/position"][:, 0] < 0.0)
-        assert np.count_nonzero(column) == file.attrs["column"] > 0
 
 
 def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
@@ -241,26 +169,6 @@ def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
         assert [HALF_STEP in group.attrs for group in file["snapshots"].values()] == [False, False, True]
 
 
-def test_what_is_cut_of_more_than_ten_thousand_snapshots_is_the_last(tmp_path, simulation) -> None:
-    path = tmp_path / "run.h5"
-    with recorder(path, simulation) as kept:
-        kept.append(simulation.advance(10))
-        kept.snapshot()
-        counts = kept.counts
-        kept.append(simulation.advance(5))
-        kept.snapshot()
-    with h5py.File(path, "r+") as file:
-        for number, later in (("0000", "9999"), ("0001", "10000")):
-            file.move(f"snapshots/{number}", f"snapshots/{later}")
-
-    with Recorder(path, simulation, step_limit=4e-4, counts=counts):
-        pass
-
-    with h5py.File(path) as file:
-        assert list(file["snapshots"]) == ["9999"]
-        assert file["snapshots/9999"].attrs["time"] == 10 * STEP
-
-
 def test_cracks_laws_and_coordination_are_kept_however_the_run_is_cut(tmp_path, bar) -> None:
     for name, blocks in (("cut", 60 * (1,)), ("run", 3 * (20,))):
         simulation = breaking(bar)
@@ -271,13 +179,11 @@ def test_cracks_laws_and_coordination_are_kept_however_the_run_is_cut(tmp_path, 
 
     began = next(step for name, step in simulation.state.laws if name == "linearpbond")
     with h5py.File(tmp_path / "run.h5") as file, h5py.File(tmp_path / "cut.h5") as cut:
-        assert "energy" not in file  # without a ledger
         cracks = file["cracks"]
         for column, values in cracks.items():
             assert np.array_equal(values, cut["cracks"][column])
         assert [name.decode() for name in file["laws/name"]] == ["elastic", "linearpbond"]
         assert file["laws/time"][:].tolist() == [0.0, began * simulation.time_step]
-        assert len(cracks["time"]) > 0
         assert cracks["time"][0] >= file["laws/time"][1]
         assert np.all(np.diff(cracks["time"]) >= 0.0)
         assert not cracks["shear"][:].any()  # pulled apart along the lattice
@@ -286,48 +192,20 @@ def test_cracks_laws_and_coordination_are_kept_however_the_run_is_cut(tmp_path, 
         np.testing.assert_allclose(second - first, np.tile([0.5, 0.0], (len(first), 1)), atol=1e-12)
         middle = 0.5 * (first + second)
         np.testing.assert_allclose(cracks["position"][:], middle, atol=np.abs(simulation.state.displacement).max())
-        ends = np.bincount(cracks["particles"][:].ravel(), minlength=simulation.scene.count)
         bonds = np.bincount(simulation.scene.assembly.pairs.ravel(), minlength=simulation.scene.count)
-        # a contact without bond that pushes counts, too
         coordination = file["snapshots/0000/coordination"][:]
         assert np.all(coordination <= bonds)
-        assert np.all(coordination >= bonds - ends)
         assert np.any(coordination < bonds)
 
 
-def test_a_material_without_bonds_has_none(tmp_path, bar) -> None:
-    material = {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}
-    scene = build(bar({"material": material, "monitor": []}))
-    simulation = Simulation(scene, STEP)
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(1))
-
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert not file["particles/bonds"][:].any()
-
-
-def test_cracks_stand_where_bonds_were_counting_from_the_start(tmp_path, bar) -> None:
-    simulation = breaking(bar, shift=100.0)
-    with recorder(tmp_path / "run.h5", simulation) as kept:
-        kept.append(simulation.advance(60))
-
-    moved = simulation.state.displacement - simulation.state.datum
-    with h5py.File(tmp_path / "run.h5") as file:
-        ends = simulation.scene.assembly.positions[file["cracks/particles"][:]]
-        assert len(ends) > 0
-        # between the two at the start, and no farther than anything has moved since
-        np.testing.assert_allclose(file["cracks/position"], ends.mean(axis=1), atol=np.abs(moved).max())
-
-
-@pytest.mark.parametrize("error", [ZeroDivisionError, KeyboardInterrupt])
-def test_a_run_that_ends_early_leaves_its_histories_and_is_not_complete(tmp_path, simulation, error) -> None:
+def test_a_run_that_ends_early_leaves_its_histories_and_is_not_complete(tmp_path, simulation) -> None:
     def fail() -> None:
         with recorder(tmp_path / "run.h5", simulation) as kept:
             for _ in range(3):
                 kept.append(simulation.advance(5))
-            raise error
+            raise KeyboardInterrupt
 
-    with pytest.raises(error):
+    with pytest.raises(KeyboardInterrupt):
         fail()
     with h5py.File(tmp_path / "run.h5") as file:
         assert not file.attrs["complete"]
@@ -355,23 +233,6 @@ def test_what_was_written_can_be_read_if_the_process_dies(
         assert len(file["snapshots"]) == (samples > 0)
 
 
-def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
-    with h5py.File(spalled_run) as file:
-        about, particles = plain(file.attrs), file["particles"]
-        assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
-        assert (about["loaded"], [text_of(end) for end in about["ends"]]) == ("left", ["free", "free"])
-        assert (about["wave_speed"], about["attenuation"]) == (1000.0, 0.0)
-        assert about["size"].tolist() == [1.0, 0.0]
-        assert set(particles) == {"position", "volume"}
-        assert particles["position"].shape == (41, 2)
-        np.testing.assert_allclose(particles["volume"], [0.0125, *39 * [0.025], 0.0125], rtol=1e-15)
-        assert text_of(particles["volume"].attrs["unit"]) == "m³"
-        assert text_of(file["energy/kinetic"].attrs["unit"]) == "J"
-        assert file["histories/gauge"].attrs["requested"].tolist() == [0.525, 0.0]
-        assert set(file["boundaries"]) == {"left", "right"}
-        assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
-
-
 def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
     scene = build_bar(spalling())
     simulation = Simulation(scene, 2.5e-5, np.array([21]))
@@ -390,18 +251,6 @@ def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
         assert np.array_equal(snapshot["stress"], part.stress(simulation.state.displacement))
         assert np.array_equal(snapshot["damage"], part.bonds.damage())
         assert snapshot["damage"][:].max() >= 0.3
-        assert (text_of(history["stress"].attrs["unit"]), text_of(snapshot["stress"].attrs["unit"])) == ("Pa", "Pa")
-
-
-def test_cracks_of_a_bar_stand_between_the_nodes_they_part(spalled_run) -> None:
-    with h5py.File(spalled_run) as file:
-        cracks, place = file["cracks"], file["particles/position"][:, 0]
-        pairs = cracks["particles"][:]
-        assert len(pairs) > 0
-        assert np.all(np.diff(cracks["time"]) >= 0.0)
-        assert not cracks["shear"][:].any()
-        np.testing.assert_allclose(cracks["position"][:, 0], place[pairs].mean(axis=1), rtol=1e-15)
-        assert len(np.unique(pairs, axis=0)) == len(pairs)
 
 
 def test_stages_that_a_record_lacks_are_written_back() -> None:
@@ -416,4 +265,3 @@ def test_stages_that_a_record_lacks_are_written_back() -> None:
         for stage in stages:
             assert np.array_equal(file[stage.name]["displacement"], displacement.T)
             assert file[stage.name].attrs["steps"] == 7
-            assert text_of(file[stage.name]["displacement"].attrs["unit"]) == "m, m, rad"

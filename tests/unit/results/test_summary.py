@@ -1,19 +1,27 @@
-"""Entries of the summary of a run."""
+"""Entries of the summary of a run, and whether record, summary and case file belong together."""
 
 import json
-from dataclasses import replace
+import math
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
+from small_cases import SPALLING, small
 
+import dembound
+from dembound.errors import CaseError, RecordError
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
+from dembound.results.checkpoint import differences
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories
-from dembound.results.summary import _fields_left_out, arrival, summarise
-from dembound.running import plan
+from dembound.results.summary import arrival, read_summary, summarise
+from dembound.results.text_files import write_json
+from dembound.running import plan, run_case
+from dembound.running.unfinished import changes_since
 
 SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
 
@@ -28,14 +36,8 @@ def summary_of(planned: Plan, path: Path, steps: int, entries: int) -> dict:
     return json.loads(json.dumps(summarise(planned, simulation, path, SECONDS), allow_nan=False))
 
 
-def test_an_infinite_step_limit_is_null(bar, tmp_path) -> None:
-    planned = replace(plan(bar({"monitor": []})), step_limit=np.inf)
-    assert summary_of(planned, tmp_path / "run.h5", 10, 2)["step_limit"] is None
-
-
 def test_energies_are_those_of_the_last_entry_and_the_rate_that_of_stepping_alone(bar, tmp_path) -> None:
     summary = summary_of(plan(bar()), tmp_path / "run.h5", 60, 6)
-    assert summary["seconds"] == SECONDS
     assert summary["wall_time"] == 2.75
     assert summary["particle_steps_per_second"] == 40 * 60 / 2.0
     found = summary["energy"]
@@ -66,11 +68,88 @@ def test_arrival_is_where_half_the_peak_is_passed_between_two_samples() -> None:
     assert arrival(TIME, np.zeros((5, 2))) == of("x", 0.0, None, None)
 
 
-def test_fields_that_are_not_kept_are_named_where_they_are_large(bar) -> None:
-    few, many = {"packing.size": [10.0, 1.0]}, {"packing.size": [500.0, 12.0], "run.time_step": 1e-4}
-    for number, size, said in (
-        (0, few, []),
-        (0, many, ["fields: no snapshot is kept, 1.15 MB each"]),
-        (1, many, []),
-    ):
-        assert _fields_left_out(plan(bar({**size, "output.snapshots": number}))) == said
+def refused(constant: str) -> float:
+    raise AssertionError(constant)
+
+
+def test_numbers_that_are_not_finite_are_null(tmp_path: Path) -> None:
+    values = {"a": math.nan, "b": [1.0, math.inf, {"c": (-math.inf, "NaN", True, None)}], "d": 1e308}
+    write_json(tmp_path / "found.json", values)
+    found = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"), parse_constant=refused)
+
+    assert found == {"a": None, "b": [1.0, None, {"c": [None, "NaN", True, None]}], "d": 1e308}
+    assert [path.name for path in tmp_path.iterdir()] == ["found.json"]
+
+
+def test_differences_name_both_values_and_what_is_not_given() -> None:
+    here = {"run": {"duration": 1.0}, "boundary": {"left": {"type": "free_field"}}, "static": {"stress": None}}
+    there = {"run": {"duration": 2.0}, "boundary": {}, "static": {"stress": [1.0, 0.0, 0.0]}}
+
+    assert differences(here, here) == []
+    assert differences(here, there) == [
+        "run.duration: is 1.0 here, and 2.0 there",
+        'boundary.left: is {"type": "free_field"} here, and not given there',
+        "static.stress: is not given here, and [1.0, 0.0, 0.0] there",
+    ]
+
+
+SHORT = {"run.duration": 1e-4, "output": {"pictures": False}}
+
+
+def written(folder: Path, **changes: float) -> Path:
+    """The file a.toml of a short case in a folder."""
+    folder.mkdir(exist_ok=True)
+    path = folder / "a.toml"
+    keys = {key.replace("__", "."): value for key, value in changes.items()}
+    path.write_text(small(SPALLING, changes=SHORT | keys).text)
+    return path
+
+
+def test_results_of_a_file_of_the_same_name_in_another_folder_are_not_replaced(tmp_path) -> None:
+    one, other = written(tmp_path / "one"), written(tmp_path / "other")
+    results = tmp_path / "results"
+    run_case(dembound.load(one), results)
+    with pytest.raises(CaseError, match=r"has results of .*one.a\.toml, which this run of .*other.a\.toml"):
+        run_case(dembound.load(other), results)
+    run_case(dembound.load(written(tmp_path / "one", run__duration=2e-4)), results)  # the same file, changed
+    one.unlink()
+    run_case(dembound.load(other), results)  # the file has been moved
+
+
+def test_a_case_file_that_has_changed_since_the_run_began_is_named_with_its_keys(tmp_path) -> None:
+    case = written(tmp_path)
+    folder = run_case(dembound.change(dembound.load(case), {"bar.density": 2600.0}), tmp_path)
+    assert changes_since(folder) == []  # changed by an option, not in the file
+    written(tmp_path, run__duration=2e-4)
+    assert changes_since(folder) != []  # as bar.density is another one there
+    written(tmp_path, bar__density=2600.0, run__duration=2e-4)
+    assert changes_since(folder) == []  # when it ends is for --until
+    written(tmp_path, bar__density=2400.0)
+    (said,) = changes_since(folder)
+    assert "has changed since the run began (bar.density); the case as it was goes on" in said
+    os.remove(case)
+    assert changes_since(folder) == []
+
+
+def test_a_wave_file_that_has_changed_since_the_run_began_is_named(tmp_path) -> None:
+    wave = tmp_path / "records" / "hit.txt"
+    wave.parent.mkdir()
+    wave.write_text("0 0\n1e-5 1\n2e-5 0\n")
+    case = tmp_path / "a.toml"
+    tables = SPALLING | {"wave": {"hit": {"type": "file", "path": "records/hit.txt"}}}
+    tables["load"] = [load | {"wave": "hit"} for load in tables["load"]]
+    case.write_text(tomli_w.dumps(tables | {"run": {"duration": 1e-4}, "output": {"pictures": False}}))
+    folder = run_case(dembound.load(case), tmp_path)
+    assert changes_since(folder) == []
+    wave.write_text("0 0\n1e-5 2\n2e-5 0\n")
+    (said,) = changes_since(folder)
+    assert said.startswith(f"{wave}: has changed since the run began; its values as they were go on")
+
+
+@pytest.mark.parametrize(("name", "value"), [("steps", 7), ("keys", {})])
+def test_a_summary_of_another_run_is_refused(tmp_path, name: str, value: object) -> None:
+    folder = run_case(small(SPALLING, changes=SHORT), tmp_path)
+    summary = read_summary(folder)
+    (folder / "summary.json").write_text(json.dumps(summary | {name: value}))
+    with pytest.raises(RecordError, match=f"is of another run than run.h5 beside it: their {name} differ"):
+        read_summary(folder)

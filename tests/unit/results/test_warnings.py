@@ -78,21 +78,6 @@ def test_a_steady_motion_is_over_and_a_crest_is_none(bar, moved) -> None:
         assert len(moved(two(bar, {"wave.pulse.period": period}), near=crest)) == warned
 
 
-def test_the_worst_monitor_is_named_and_all_are_counted(bar, moved) -> None:
-    rising = {"near": np.minimum(PULSE + TIME**40, 1.0), "far": PULSE + 0.4 * TIME**40}
-    (warning,) = moved(two(bar), component=1, **rising)
-
-    assert warning.startswith("monitor.near: its velocity is 100 % of its peak when the run ends after 1 s")
-    assert "(2 of 2 monitors)" in warning
-
-
-def test_bodies_that_nothing_brakes_move_on(bar, moved) -> None:
-    free = {side: {"type": "free"} for side in ("left", "right")}
-    free["left"] = {"type": "velocity", "wave_p": "pulse"}
-    assert moved(two(bar, {"boundary": free}), near=TIME**4) == []
-    assert len(moved(two(bar, {"boundary": free, "material.damp": 0.1}), near=TIME**4)) == 1
-
-
 def test_pieces_that_have_come_off_move_on(bar, moved) -> None:
     case = two(bar, {"boundary.right": {"type": "free"}})
     scene = build(case)
@@ -104,21 +89,6 @@ def test_pieces_that_have_come_off_move_on(bar, moved) -> None:
     assert "(2 of 2 monitors)" in moved(case, broken=across[:-1], near=TIME**4, far=TIME**4)[0]
     assert "(1 of 1 monitors)" in moved(case, broken=across[:, ::-1], near=TIME**4, far=TIME**4)[0]
     assert moved(case, broken=across, near=PULSE, far=TIME**4) == []
-
-
-def test_twins_in_the_column_are_no_monitors(bar, moved) -> None:
-    sides = {"left": {"type": "free_field"}, "bottom": {"type": "viscous_input", "wave_p": "pulse"}}
-    case = two(bar, {"boundary": sides, "motion.held": [], "packing.size": [10.0, 5.0]})
-    quiet = {"near": PULSE, "far": PULSE, "near__free_field": TIME**4, "far__free_field": TIME**4}
-    assert moved(case, **quiet) == []
-
-
-def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
-    sides = {side: {"type": "outside"} for side in ("left", "right")}
-    places = [{"name": name, "position": [x, 0.5]} for name, x in (("near", 2.0), ("far", -0.9))]
-    case = bar({"boundary": sides, "outside.element": 1.0, "motion.held": [], "monitor": places})
-
-    assert [warning.split(":")[0] for warning in moved(case, near=PULSE, far=TIME**4)] == ["monitor.far"]
 
 
 def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved) -> None:

@@ -1,6 +1,5 @@
 """Whatever fails during a run, its record can be read, its checkpoint continued, and earlier results remain."""
 
-import json
 import os
 import re
 import resource
@@ -10,7 +9,6 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import cycle
 from pathlib import Path
 
@@ -78,11 +76,10 @@ def history(record) -> np.ndarray:
         return file["histories/gauge/velocity"][()]
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(9, marks=pytest.mark.slow)])
-def test_a_full_disk_loses_nothing_that_was_written(case, finished, whole, tmp_path, count: int) -> None:
+def test_a_full_disk_loses_nothing_that_was_written(case, finished, whole, tmp_path) -> None:
     largest = max(path.stat().st_size for path in finished.rglob("*"))
     reached = set()
-    for number, size in enumerate(np.linspace(100, 0.95 * largest, count, dtype=int)):
+    for number, size in enumerate(np.linspace(100, 0.95 * largest, 3, dtype=int)):
         results = tmp_path / str(number)
         earlier = shutil.copytree(finished, results / "bar") / "run.h5"
         with largest_file(int(size)), pytest.raises(OSError, match=r"File too large|larger than") as failure:
@@ -96,17 +93,7 @@ def test_a_full_disk_loses_nothing_that_was_written(case, finished, whole, tmp_p
             reached.add(len(kept))
         again = resume_case(partial) if (partial / "checkpoint.npz").is_file() else run_case(case, results)
         assert np.array_equal(history(again / "run.h5"), whole)
-    assert len(reached) > count // 4  # from its beginning to its end
-
-
-def test_a_folder_that_is_removed_ends_the_run_with_its_name(case, tmp_path, monkeypatch) -> None:
-    def removed(*_: object) -> None:
-        shutil.rmtree(tmp_path / "bar.partial")
-
-    monkeypatch.setattr(job, "write_paraview", removed)
-    with pytest.raises(FileNotFoundError) as failure:
-        run_case(case, tmp_path)
-    assert "bar.partial" in str(failure.value.filename)
+    assert reached
 
 
 def test_a_run_that_ends_in_its_last_files_is_resumed_also_from_within(
@@ -176,32 +163,7 @@ with Folder(partial.parent, partial.stem).writing(anew=True):
 """
 
 
-def test_a_name_cannot_be_that_of_an_unfinished_run(tmp_path) -> None:
-    for name in ("bar.partial", "bar.replaced"):
-        with pytest.raises(CaseError, match="is not a valid name of a case, must not end in"):
-            run_case(replace(pulled(), name=name), tmp_path)
-
-
-def test_a_link_or_a_file_is_found_before_the_run(case, tmp_path) -> None:
-    (tmp_path / "elsewhere").mkdir()
-    for place in ("bar", "bar.partial"):
-        link = tmp_path / f"links_{place}" / place
-        link.parent.mkdir()
-        link.symlink_to(tmp_path / "elsewhere")
-        with pytest.raises(CaseError, match="is a link"):
-            run_case(case, link.parent)
-        link.unlink()
-        link.write_text("mine")
-        with pytest.raises(CaseError, match="is a file"):
-            run_case(case, link.parent)
-    # a link above it may lead anywhere
-    (tmp_path / "results").symlink_to(tmp_path / "elsewhere")
-    assert run_case(case, tmp_path / "results").is_dir()
-
-
-@pytest.mark.parametrize(
-    "number", [signal.SIGHUP, *(pytest.param(each, marks=pytest.mark.slow) for each in (signal.SIGINT, signal.SIGTERM))]
-)
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
 def test_a_signal_ends_a_run_with_a_checkpoint(case, whole, tmp_path, monkeypatch, number) -> None:
     class Signalled(job.Checkpoints):
         """A run that receives a signal in one of its blocks."""
@@ -239,9 +201,8 @@ def test_what_cannot_be_resumed_is_refused_with_the_reason(folder, tmp_path) -> 
     checkpoint = (folder / "checkpoint.npz").read_bytes()
     other = pulled("other", bar__strength=9e6)
     shutil.copy(run_case(other, tmp_path) / "run.h5", folder / "run.h5")
-    for until in (None, 0.001, 0.05):
-        with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
-            resume_case(folder, until=until)
+    with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
+        resume_case(folder, until=0.05)
     (folder / "checkpoint.npz").write_bytes(re.sub(rb'("version": ")[^"]+', version_of_equal_length, checkpoint))
     with pytest.raises(RecordError, match="is damaged: Bad CRC-32"):
         resume_case(folder, until=0.05)
@@ -275,16 +236,16 @@ def test_a_longer_run_that_ends_before_its_first_checkpoint_is_resumed(folder, t
 def test_a_damaged_record_is_not_continued(folder, tmp_path) -> None:
     record = folder / "run.h5"
     sound = record.read_bytes()
-    for part in ("snapshots/0001/velocity", "histories/gauge/velocity"):
-        with h5py.File(record) as file:
-            place = file[part].id.get_chunk_info(0).byte_offset
-        data = bytearray(sound)
-        data[place + 10] ^= 1
-        record.write_bytes(data)
-        with h5py.File(record) as file, pytest.raises(OSError, match=r"checksum|filter"):
-            file[part][()]
-        with pytest.raises(RecordError, match=rf"run\.h5: is damaged in {part}"):
-            resume_case(folder, until=0.03)
+    part = "snapshots/0001/velocity"
+    with h5py.File(record) as file:
+        place = file[part].id.get_chunk_info(0).byte_offset
+    data = bytearray(sound)
+    data[place + 10] ^= 1
+    record.write_bytes(data)
+    with h5py.File(record) as file, pytest.raises(OSError, match=r"checksum|filter"):
+        file[part][()]
+    with pytest.raises(RecordError, match=rf"run\.h5: is damaged in {part}"):
+        resume_case(folder, until=0.03)
     record.write_bytes(sound)
     with h5py.File(record, "a") as file:
         times = file["histories/gauge/time"]
@@ -305,12 +266,9 @@ def contents(folder) -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.slow)])
-def test_a_record_that_lacks_any_part_is_not_continued(folder, tmp_path, every: bool) -> None:
+def test_a_record_that_lacks_any_part_is_not_continued(folder, tmp_path) -> None:
     whole = (folder / "run.h5").read_bytes()
-    parts = parts_of(folder / "run.h5")
-    if not every:  # one of each group
-        parts = list({part.split("/")[0]: part for part in parts}.values())
+    parts = list({part.split("/")[0]: part for part in parts_of(folder / "run.h5")}.values())  # one of each group
     # complete, or not, in turn
     unfinished = shutil.copytree(folder, tmp_path / "other" / "bar.partial")
     for part, own in zip(parts, cycle((folder, unfinished)), strict=False):
@@ -332,7 +290,6 @@ def test_a_record_with_other_numbers_is_not_continued(folder, tmp_path) -> None:
     for part, change, reason in (
         (speed, lambda values: values[:3], f"it lacks .* rows in {speed}, it has"),
         (speed, lambda values: np.full_like(values, np.nan), "velocity has a number that is not"),
-        ("energy/kinetic", lambda values: np.full_like(values, np.inf), "energy/kinetic has a number that is not"),
         ("particles/volume", lambda values: values[1:], "it lacks particles/volume as this case records it"),
     ):
         with h5py.File(folder / "run.h5", "a") as file:
@@ -357,12 +314,6 @@ def test_a_checkpoint_of_another_version_is_refused(tmp_path, monkeypatch) -> No
         resume_case(folder, until=0.05)
 
 
-def test_without_checkpoints_nothing_is_kept(tmp_path) -> None:
-    folder = run_case(pulled(run__checkpoint=0.0, run__duration=1e-2), tmp_path)
-    assert not (folder / "checkpoint.npz").exists()
-    assert json.loads((folder / "summary.json").read_text())["resumed"] == []
-
-
 def test_without_a_checkpoint_the_run_is_begun_anew_from_its_record(folder, tmp_path) -> None:
     partial = folder.rename(tmp_path / "bar.partial")
     (partial / "checkpoint.npz").unlink()
@@ -372,21 +323,3 @@ def test_without_a_checkpoint_the_run_is_begun_anew_from_its_record(folder, tmp_
             resume_case(folder)
     run_case(recorded_case(partial / "run.h5"), tmp_path)
     assert (tmp_path / "bar" / "run.h5").is_file()
-
-    partial.mkdir()
-    (tmp_path / "bar" / "run.h5").unlink()
-    (tmp_path / "bar" / "checkpoint.npz").unlink()
-    with pytest.raises(CaseError, match=r"ended before its first checkpoint$"):
-        resume_case(tmp_path / "bar")
-
-
-def test_a_record_without_its_case_is_damaged(folder) -> None:
-    record = folder / "run.h5"
-    for part in ("inputs", "case"):
-        with h5py.File(record, "a") as file:
-            del (file if part == "inputs" else file.attrs)[part]
-        with pytest.raises(RecordError, match=rf"run\.h5: is damaged: it has no {part}$"):
-            recorded_case(record)
-        if part == "inputs":
-            with h5py.File(record, "a") as file:
-                file.create_group("inputs")

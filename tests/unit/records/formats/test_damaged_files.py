@@ -10,21 +10,8 @@ from dembound.errors import CaseError
 from dembound.records.formats import read_record
 
 SAMPLES = sorted((Path(__file__).parents[1] / "samples").glob("sample*"))
-CHANGES = 1000
-TEXTS = [
-    b"",
-    b"\0",
-    b"nan",
-    b"inf",
-    b"1e999",
-    b"-1E+300",
-    b"99999999999999999999",
-    b"0",
-    b"-999",
-    b"*" * 9,
-    b"\xff",
-    b",",
-]
+CHANGES = 400
+TEXTS = [b"", b"\0", b"nan", b"inf", b"1e999", b"99999999999999999999", b"-999", b"*" * 9, b"\xff", b","]
 
 
 def damaged(content: bytes, draw: random.Random) -> bytes:
