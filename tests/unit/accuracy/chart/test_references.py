@@ -36,11 +36,8 @@ def test_a_bar_that_spalls_has_one_until_then(spalling) -> None:
     [
         {"bar.attenuation": 0.1},
         {"load.1.side": "right"},
-        {"load.1.pressure": -12e6},
-        {"boundary.right": {"type": "viscous"}},
         {"boundary.left": {"type": "viscous"}},
         {"wave.hit": {"type": "cosine", "amplitude": 1.0, "period": 4e-4}},
-        {"wave.hit.fall": 9e-4},
     ],
 )
 def test_other_bars_have_none(spalling, changes) -> None:
@@ -48,7 +45,7 @@ def test_other_bars_have_none(spalling, changes) -> None:
         exact_of(spalling(changes))
 
 
-@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("viscous", 0.0), ("matched_layer", 0.0)])
+@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("matched_layer", 0.0)])
 def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
     case = spalling({"bar.strength": 1e9, "boundary.right": {"type": end}})
     time = np.array([0.7e-3, 1.7e-3])  # 0.5 m from the load: the crest of 0.2 ms, and its echo
@@ -86,7 +83,6 @@ def test_a_plane_wave_starts_at_its_side_wherever_the_scene_is(bar) -> None:
     [
         {"motion.held": []},
         {"boundary.right": {"type": "free"}},
-        {"boundary.top": {"type": "fixed"}},
         {"hole": [{"name": "h", "type": "circle", "centre": [8.0, 0.5], "radius": 0.3}]},
         {"material.law": "linearpbond"},
         {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []},
