@@ -13,7 +13,6 @@ from dembound.accuracy import repeat
 from dembound.accuracy.estimate import estimate_results
 from dembound.accuracy.repeat import Cracked, Repeat, repeated
 from dembound.errors import CaseError, RunError
-from dembound.results.compare import compare
 from dembound.running import run_case
 from dembound.running.recorded import recorded_case
 
@@ -71,11 +70,6 @@ def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, tmp_path, mo
     assert other["time_step"] == pytest.approx(0.98 * own["time_step"], rel=1e-12)
     assert own["cracks"] == len(Cracked.of(torn / "run.h5")) > 10
     assert entry["repeat"]["within"] == pytest.approx(1.05 * 0.5)
-    assert [line.split(":")[0] for line in entry["notes"]][-3:] == [
-        "repeated at 0.98 of the time step",
-        entry["notes"][-2].split(":")[0],
-        "motion changes by",
-    ]
     assert entry["cost"] > 1.0
     assert any(line.startswith("motion after") for line in entry["not_estimated"])
     with h5py.File(torn / "estimate.h5") as file:
@@ -101,16 +95,6 @@ def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, tmp_path, monk
 def _in(folder, make):
     """A temporary directory made in a folder."""
     return lambda self, **options: make(self, **options, dir=folder)
-
-
-def test_changes_of_motion_are_those_that_compare_finds(torn, tmp_path) -> None:
-    """Numbers of the second run when it is made and when it is read again."""
-    record = torn / "run.h5"
-    found = repeated(recorded_case(record), record, Cracked.of(record))
-    again = run_case(small(PUSHED, "again", BREAKING | {"run.time_step": found.other.time_step}), tmp_path)
-    for quantity in ("velocity", "displacement"):
-        for line in compare(record, [again / "run.h5"], quantity):
-            assert found.changes[line.monitor][quantity] == pytest.approx(line.rms, rel=1e-9)
 
 
 def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
@@ -142,7 +126,6 @@ def test_many_cracks_need_no_monitor_but_a_repeat_needs_cracks(torn, tmp_path) -
 
     assert found.repeat.changes == {}
     assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
-    assert estimate_results(folder).summary()["not_estimated"] == found.summary()["not_estimated"]
     folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
     with pytest.raises(CaseError, match="has no broken bonds"):
         estimate_results(folder, repeat=True)

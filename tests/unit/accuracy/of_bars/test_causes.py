@@ -174,22 +174,6 @@ def test_finite_differences_at_courant_number_1_are_exact(name: str, changes: di
             )
 
 
-@pytest.mark.parametrize(
-    ("name", "changes", "causes"),
-    [
-        ("viscous end", {"boundary.right.beta_p": 0.999}, {"grid"}),  # returns 0.05 %
-        ("viscous end", {"bar.attenuation": 0.5}, set()),
-        ("viscous end", {"run.courant": 0.999}, set()),
-        ("viscous end", {"bar.range": [*EVEN["range"][:1], EVEN["range"][1] | {"spacing": 0.01}]}, set()),
-        ("viscous end", {"method": {"type": "peridynamics", "horizon": 1}}, set()),
-    ],
-)
-def test_what_is_not_exact(name: str, changes: dict[str, Any], causes: set[str]) -> None:
-    found = estimated(with_changes(scene(name), AT_ONE | changes))[1].found
-
-    assert {each.name for each in found if each.words in (NO_GRID, NO_ECHO)} == causes
-
-
 def test_loads_on_several_nodes_are_a_cause_of_their_own_at_courant_number_1() -> None:
     case = with_changes(scene("viscous end"), AT_ONE | {"load.hit.nodes": 3})
     recorded, causes = estimated(case)

@@ -61,20 +61,18 @@ duration = 0.3
 SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
 
 
-@pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), pytest.param("p", -20.0, marks=pytest.mark.slow)])
-def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle, monkeypatch) -> None:
+def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(monkeypatch) -> None:
     """Direction, polarisation, and the delay from the point to the hole."""
     monkeypatch.setattr(module, "SAMPLES", 300)  # times
-    case = with_changes(loads(CASE), {"incident.type": kind, "incident.angle": angle, "run.duration": 0.16})
+    angle, case = math.radians(30.0), with_changes(loads(CASE), {"run.duration": 0.16})
     problem, motions = exact_motions(build(case))
     assert problem.name == "scattering"
-    speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
-    delay = 30.0 * math.cos(math.radians(angle)) / speed
-    wave = PlaneWave(kind, math.radians(90.0 - angle), case.wave["pulse"].velocity)
+    delay = 30.0 * math.cos(angle) / SOLID.s_wave_speed
+    wave = PlaneWave("sv", 0.5 * math.pi - angle, case.wave["pulse"].velocity)
     for name, place in (("left", [-5.5, 0.5]), ("above", [0.5, 6.5])):
         motion = motions[name]
         # what the surface sends back needs 120 m − 20 m up and 120 m − 57 m down, at 1000 m/s or less
-        early = motion.time < (100.0 + 60.0) * math.cos(math.radians(angle)) / 1000.0
+        early = motion.time < (100.0 + 60.0) * math.cos(angle) / 1000.0
         expected = scattered_motion(motion.time[early] - delay, np.array([place]), wave, 5.0, SOLID)
         assert np.abs(expected.velocity).max() > 0.3
         for found, moved in ((motion.displacement, expected.displacement), (motion.velocity, expected.velocity)):
@@ -105,7 +103,6 @@ def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo(monkeypa
     [
         ({"hole": [{"name": "h", "type": "rectangle", "corners": [48.0, 48.0, 52.0, 52.0]}]}, "that of one circle"),
         ({"load": [{"name": "blow", "force": [1.0, 0.0], "position": [45.5, 45.5], "wave": "pulse"}]}, "alone"),
-        ({"wave.pulse": {"type": "constant", "amplitude": 1.0}}, r"wave\.pulse: has a jump at"),
     ],
 )
 def test_other_problems_are_refused(changes, message) -> None:

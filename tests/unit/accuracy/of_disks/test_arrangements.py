@@ -57,12 +57,6 @@ def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
     assert cheapest_box(scene) is None  # it is one already
 
 
-def test_a_box_begins_with_the_stress_given_to_all_the_ground() -> None:
-    case = tunnel(static={"stress": [-2e6, 0.0, 0.0]})
-    assert may_be_boxed(case)
-    assert boxed(case)[1].at_rest is not None
-
-
 def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     load = [{"name": "blow", "position": [60.0, 98.0], "force": [0.0, -1.0], "wave": "pulse"}]
     sides = dict.fromkeys(("left", "right", "bottom"), VISCOUS)
@@ -96,16 +90,3 @@ def test_a_box_round_a_slope_ends_on_its_floor() -> None:
     assert (scene.disk_count, scene.outside.count) == (found.disks, found.nodes)
     assert scene.outside.levels["right"].surface == pytest.approx(80.0, abs=1e-9)
     assert 79.0 <= scene.outside.box[2] < 115.0
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"hole": [SLOPE]},  # under a wave from below
-        {"hole": [SLOPE | {"points": [[60.0, 101.0], [121.0, 70.0], [121.0, 101.0]]}], "load": [BLOW]},
-    ],
-)
-def test_without_a_level_floor_or_under_waves_there_is_no_box(changes: dict[str, Any]) -> None:
-    if "load" in changes:
-        changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}} | changes
-    assert not may_be_boxed(tunnel(**changes))
