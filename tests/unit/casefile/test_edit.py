@@ -10,13 +10,8 @@ import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dembound import shipped, starting
 from dembound.casefile.edit import commented, edited, rewritten
 from dembound.casefile.keys import Place, lines_of, statements_of
-
-SHIPPED = [(shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()]
-TEXTS = sorted([*SHIPPED, *map(starting.starting_point, starting.names())], key=len)
-some_or_all = pytest.mark.parametrize("texts", [TEXTS[::4], pytest.param(TEXTS, marks=pytest.mark.slow)])
 
 ODD = """\
 #:schema ./dembound.schema.json
@@ -82,37 +77,6 @@ def put(data: Any, place: Place, value: Any) -> None:
     for key in place[:-1]:
         data = data[key]
     data[place[-1]] = value
-
-
-@some_or_all
-def test_a_changed_value_changes_its_own_lines_alone(texts: list[str]) -> None:
-    for text in texts:
-        found, lines = list(leaves(tomllib.loads(text))), lines_of(text)
-        for place, value in found[:: max(1, len(found) // 3)]:
-            requested = tomllib.loads(text)
-            put(requested, place, other(value))
-            new = rewritten(text, requested)
-            assert tomllib.loads(new) == requested
-            (held,) = (
-                each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
-            )
-            assert new.startswith("".join(lines[: held.begin]))
-            assert new.endswith("".join(lines[held.end :]))
-            assert new != text
-
-
-@some_or_all
-def test_added_and_removed_keys_leave_all_other_lines(texts: list[str]) -> None:
-    for text in texts:
-        added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
-        data = tomllib.loads(text)
-        data.setdefault("output", {})["added"] = 1.5
-        data["new_table"] = {"key": [1, 2]}
-        data.setdefault("boundary", {}).setdefault("top", {})["added"] = True
-        assert tomllib.loads(added) == data
-        rest = iter(added.split("\n"))
-        assert all(line in rest for line in text.split("\n"))  # in their order
-        assert edited(added, {"output.added": None}).count("\n") == added.count("\n") - 1
 
 
 def test_a_line_in_an_odd_layout() -> None:

@@ -4,7 +4,6 @@ import pytest
 from small_cases import problems_of, rows
 
 from dembound.casefile.types import BOUNDARIES
-from dembound.kinds import loads
 from dembound.table import name_of
 
 BASE = """\
@@ -34,19 +33,9 @@ def side(name: str, kind: str) -> str:
     return f'[static.boundary.{name}]\ntype = "{kind}"\n'
 
 
-def test_a_stage_is_read_with_its_sides_in_order() -> None:
-    static = loads(BASE + ELASTIC + STRESS + side("bottom", "roller") + side("left", "fixed")).static
-
-    assert (static.stress, static.ratio, static.damp, static.max_steps) == ((-1e6, -1e6, 0.0), None, 0.7, 200_000)
-    assert [(name, table.type) for name, table in static.boundary.items()] == [("left", "fixed"), ("bottom", "roller")]
-
-
 MISTAKES = r"""
 ratio = 1 | .ratio: is 1, must be less than 1
-damp = 0.0 | .damp: is 0.0, must be greater than 0
-max_steps = 0 | .max_steps: is 0, must be at least 1
 dump = 0.5 | .dump: unknown key; allowed: stress, k0, ratio, damp, max_steps, from, boundary (did you mean damp?)
-boundary = 1 | .boundary: is 1, must be tables by name, [static.boundary.NAME] in TOML
 boundary.lefd.type = "free" | .boundary.lefd: unknown side; allowed: left, right, bottom, top (did you mean left?)
 boundary.top = {type = "free", x = 1} | .boundary.top.x: unknown key; allowed: type, artificial
 boundary.top = {type = "fixed", artificial = false} | .boundary.top.artificial: is of no use in the static stage; give i
@@ -112,13 +101,6 @@ def test_a_stress_that_cannot_be_reached_is_refused() -> None:
     assert problems(STRESS, side("bottom", "roller")) == []
     for across in ("fixed", "roller"):
         assert problems(STRESS.replace("-1e6, -1e6", "0, -1e6"), side("left", across), side("right", across)) == []
-
-
-def test_periodic_sides_take_no_support_but_a_stress() -> None:
-    assert problems(PERIODIC, STRESS, side("left", "roller")) == [
-        "static.boundary.left: is not allowed, as boundary.left is periodic",
-    ]
-    assert problems(PERIODIC, "[static]\n", side("bottom", "fixed"), GRAVITY) == []
 
 
 def test_free_field_sides_take_supports_and_a_stress() -> None:
