@@ -87,9 +87,7 @@ def test_table_holds_the_curves(tmp_path):
 @pytest.mark.parametrize(
     ("method", "horizons"),
     [
-        ({"type": "finite_difference"}, [1]),
         ({"type": "peridynamics", "horizon": 3}, [3]),
-        ({"type": "peridynamics", "horizon": 2, "corrected_ends": True}, [2]),
         ({"type": "switch", "horizon": 4, "before": "peridynamics"}, [1, 4]),
         ({"type": "patch", "horizon": 3}, [1, 3]),
     ],

@@ -62,8 +62,6 @@ def test_histories_are_those_of_a_direct_run(heavy, tmp_path):
                 # rounding of sums of some hundred terms, each as large as the peak: 1e-13 of it at most
                 atol = 1e-12 * np.abs(values).max(axis=0)
                 assert (np.abs(motion[:, number, columns] - values) <= atol).all()
-    for quantity in ("velocity", "displacement"):
-        assert all(found.peak < 1e-12 for found in compare(direct, [path], quantity))
     # the step is a fraction of the spacing and of the histories' 0.4 ms, in whole steps of 0.25 ms, as in runs
     step, apart = heavy.case.run.time_step, heavy.time[1] - heavy.time[0]
     assert apart == pytest.approx(2 * step)
@@ -129,20 +127,6 @@ def test_inputs_without_a_record_are_silent(heavy, tmp_path):
     assert case.wave["up"].start > case.run.duration
 
 
-def test_responses_begin_with_their_triangle(heavy):
-    """Nothing moves before its triangle; the response is that of the crest at the spacing."""
-    for name in heavy.inputs:
-        response = heavy.response(name)
-        assert not response[0].any()
-        assert np.abs(response).max() > 0.0
-        np.testing.assert_allclose(
-            heavy.motion({name: np.array([0.0, 2.0, 0.0])}) - heavy.rest, 2.0 * response, atol=1e-15
-        )
-        shifted = heavy.motion({name: np.array([0.0, 0.0, 0.0, 1.0])}) - heavy.rest
-        steps = round(2 * SPACING / (heavy.time[1] - heavy.time[0]))
-        np.testing.assert_allclose(shifted[steps:], response[:-steps], atol=1e-14 * np.abs(response).max() * 100)
-
-
 def test_a_scene_without_steady_forces_needs_one_run(tmp_path):
     tables = PUSHED | {"boundary": PUSHED["boundary"] | {"left": {"type": "velocity", "wave_p": "push"}}}
     folder = build_library(small(tables, "one"), SPACING, tmp_path)
@@ -156,9 +140,7 @@ def test_a_scene_without_steady_forces_needs_one_run(tmp_path):
     ("changes", "problem"),
     [
         ({"material.law": "linearpbond"}, 'material.law: is "linearpbond", .* so "elastic"'),
-        ({"material.damp": 0.1}, "material.damp: is 0.1, must be 0 in a library"),
         ({"monitor": []}, "monitor: there is none"),
-        ({"boundary": {}}, "wave: none acts on this case"),
         ({"run.time_step": 3e-4}, r"run.time_step: is 0.0003 s, must be a whole fraction of the spacing, 0.00025 s"),
     ],
 )
