@@ -9,7 +9,6 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.advise import advise
 from dembound.accuracy.of_disks import candidates
-from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
@@ -70,24 +69,6 @@ def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None
     assert choice.case.packing == case.packing
     assert choice.case.boundary == case.boundary
     assert choice.by["sides"] == pytest.approx(true_error(case), rel=0.1)
-
-
-def test_choices_that_take_longer_are_tried_where_they_may(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And each is built once for all bounds, here two of which none holds at first."""
-    monkeypatch.setattr(candidates, "AFFORDABLE", 0.0)
-    monkeypatch.setattr(candidates, "COSTLIEST", 1.5)
-    kept, built, build = ["boundary"], list[tuple[str, float]](), Options.build
-
-    def counting(self: Options, option: DiskOption) -> Built | None:
-        built.append((option.case.text, option.wider))
-        return build(self, option)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Options, "build", counting)
-        few = advise(bar(), (0.01, 0.005), kept=kept).best
-    assert not any(few[bound].holds(bound) for bound in (0.01, 0.005))
-    assert len(built) == len(set(built)) > 1
-    assert advise(bar(), (0.005,), kept=kept, longest=60.0).best[0.005].holds(0.005)
 
 
 def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:

@@ -5,17 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from advised import advised
 from small_cases import PUSHED, small
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
 from dembound.accuracy.proposal import Proposal
-from dembound.accuracy.runner import measure
 from dembound.formulas.cause import Cause, Causes
 from dembound.formulas.history import History
-from dembound.running import Progress
 
 BAR: dict[str, Any] = PUSHED | {
     "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
@@ -99,13 +96,3 @@ def test_sides_add_nothing_to_what_is_not_recorded() -> None:
     lost = true["back"].values["velocity"][true["back"].time >= 0.3]
     share = float(np.linalg.norm(lost) / np.linalg.norm(true["back"].values["velocity"]))
     assert both.total("back", "velocity").value == pytest.approx(share, rel=1e-9)
-
-
-def test_the_run_of_a_choice_ends_when_it_is_expected_to() -> None:
-    choice = advised(small(BAR), 0.01, ["packing.radius"])
-    assert choice.holds
-    assert choice.case.run.until == "silent"
-    gauges = measure(choice.case, Progress())[0].motions
-    expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
-    assert gauges["near"].time[-1] == pytest.approx(expected, rel=0.05)
-    assert expected == pytest.approx(PASSED + ECHO, rel=0.05)

@@ -141,22 +141,6 @@ def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
     assert extended(hollow).case.packing.extent[1] == 5.0
 
 
-def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar) -> None:
-    """Their column has the waves of the ground, so only scattered waves must not return."""
-    outside = {"left": {"type": "outside"}, "right": {"type": "outside"}, "bottom": {"type": "outside", **WAVE}}
-    free_field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
-    around, beside = (
-        extended(bar({**FIELD, "hole": [HOLE], "boundary": sides, "run.duration": 0.03}))
-        for sides in (outside, free_field)
-    )
-    assert around.case.packing.box == beside.case.packing.box
-    assert around.case.packing.box[0] < 0.0
-    assert around.case.packing == beside.case.packing
-    assert around.sentence.endswith(
-        "bottom stays, as waves enter there, before a continuum, which returns next to nothing"
-    )
-
-
 def test_a_hole_over_a_side_that_moves_is_refused(field) -> None:
     valley = {"name": "valley", "type": "rectangle", "corners": [-1.0, 3.0, 2.0, 6.0]}
     moved = {"monitor": [{"name": "a", "position": [5.0, 1.0]}], "load": []}

@@ -8,8 +8,7 @@ from jsonschema import Draft202012Validator
 from small_cases import rows
 
 from dembound.casefile.json_schema import DRAFT, json_schema
-from dembound.errors import CaseError
-from dembound.kinds import SCHEMAS, loads
+from dembound.kinds import SCHEMAS
 from dembound.starting import names, starting_point
 
 SHIPPED = sorted((Path(__file__).parents[3] / "cases").rglob("*.toml"))
@@ -58,34 +57,6 @@ def test_a_mistake_is_found_where_it_is(problems, name: str, old: str, new: str,
     assert old in text
     found = problems(text.replace(old, new, 1))
     assert any(where == place and said in what for where, what in found)
-
-
-BEDS = """
-[packing]
-pattern = "A"
-size = [4.0, 4.0]
-radius = 0.25
-[[layer]]
-thickness = 2.0
-density = 1800.0
-emod = 1e8
-pb_emod = 0.0
-[[layer]]
-density = 2300.0
-emod = 1e9
-pb_emod = 0.0
-[run]
-duration = 0.1
-"""
-
-
-def test_layers_that_all_give_a_density_complete_the_material(problems) -> None:
-    loads(BEDS)
-    assert problems(BEDS) == []
-    lacking = BEDS.replace("density = 1800.0\n", "")
-    with pytest.raises(CaseError):
-        loads(lacking)
-    assert problems(lacking) == [("$", "'material' is a required property")]
 
 
 def test_units_stand_in_descriptions_and_null_nowhere(schema) -> None:

@@ -60,15 +60,6 @@ def test_a_wave_that_rounding_would_change_is_refused() -> None:
         assert [line.partition(", must be at most")[0] for line in found] == late * [f"wave.push.start: is {start:g}"]
 
 
-def test_a_record_that_rounding_would_change_is_refused(tmp_path) -> None:
-    path = tmp_path / "late.txt"
-    for first, late in ((1e9, False), (1e12, True)):
-        path.write_text("\n".join(f"{first + 0.25 * k!r} {k % 2}" for k in range(5)))
-        wave = {"type": "file", "path": str(path)}
-        found = problems(PUSHED | {"wave": PUSHED["wave"] | {"push": wave}})
-        assert [line.startswith("wave.push.path: a time in ") for line in found] == late * [True]
-
-
 def test_names_and_titles_do_not_reorder_text() -> None:
     for hidden in ("\u202e", "\u200b"):
         (found,) = problems(PUSHED | {"title": f"a{hidden}b"})

@@ -51,17 +51,6 @@ def problem(old: str, new: str) -> str:
     return line
 
 
-def test_a_good_case_is_read_as_it_stands() -> None:
-    case = loads(GOOD, Path("somewhere"), "bar")
-
-    assert (case.title, case.name, case.folder, case.text) == ("short bar", "bar", Path("somewhere"), GOOD)
-    assert (case.packing.size, case.packing.radius) == ((10.0, 5.0), 0.25)
-    assert list(case.boundary) == ["left", "right"]
-    assert case.boundary["left"].type == "viscous_input"
-    assert case.wave["pulse"].peak() == 0.5
-    assert (case.run.duration, case.run.time_step, case.run.safety) == (0.1, "auto", 0.9)
-
-
 MISTAKES = r"""
 # values out of limits
 radius = 0.25 | radius = -0.25 | packing.radius: is -0.25, must be greater than 0
@@ -142,17 +131,6 @@ def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
     assert found[0].endswith("(did you mean packing?)")
     missing = ["packing.pattern", "material.density", "run.duration"]
     assert [text.split(":")[0] for text in problems_of("[packing]")] == missing
-
-
-def test_text_that_is_not_toml_names_the_line() -> None:
-    for text, line in (
-        ("a = 1\nb = = 2\n", "line 2: Invalid value, in: b = = 2"),
-        ("[run]\n[run]\n", "line 2: "),
-        ("a = [1", "at the end: "),
-    ):
-        (found,) = problems_of(text)
-        assert found.startswith(line)
-        assert "column" not in found
 
 
 def test_a_file_gives_name_and_folder_and_unreadable_ones_are_named(tmp_path: Path) -> None:

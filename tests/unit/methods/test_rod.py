@@ -42,7 +42,6 @@ def tension(rod: Rod) -> np.ndarray:
 
 LAYOUTS = {
     "springs": [],
-    "right of it": [(20, 40)],
     "across": [(12, 30)],
     "all": [(0, 51)],
     "near": [(10, 18), (24, 40)],

@@ -63,18 +63,6 @@ def test_kernel_forces_are_those_of_single_pairs():
     assert not forces.any()
 
 
-def test_looking_for_requests_to_end_changes_no_bit(monkeypatch) -> None:
-    def relaxed() -> Bed:
-        rng = np.random.default_rng(3)
-        made = Bed(np.array([6.0, 6.0]), 6.0 * rng.random((60, 2)), np.full(60, 0.42), 0)
-        made.relax(1e-6, faint=1e-3)
-        return made
-
-    whole = relaxed()
-    monkeypatch.setattr(module, "AT_ONCE", 3 * 400)  # a few steps at once
-    np.testing.assert_array_equal(relaxed().positions, whole.positions)
-
-
 def test_the_widest_circle_between_disks_touches_three_and_overlaps_none():
     rng = np.random.default_rng(7)
     angles = 2.0 * np.pi * (np.arange(7) + rng.uniform(-0.2, 0.2, 7)) / 7.0

@@ -5,8 +5,6 @@ import pytest
 from dembound.accuracy.chart.study import defaults, from_table
 from dembound.accuracy.choice import changed, choices_of
 from dembound.accuracy.of_disks import chart_choices
-from dembound.disks.matching import homogenised_beta
-from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder, names
@@ -57,18 +55,6 @@ def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
         "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
         "right free": {"boundary.right": {"type": "free"}},
     }
-
-
-def test_matched_factors_are_a_choice_where_others_are_given(bar) -> None:
-    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
-    own = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
-    beta = homogenised_beta(build(own), "right", "p")
-    assert 0.5 < beta < 0.95
-    other = with_changes(own, {"boundary.right.beta_p": 1.0, "boundary.left.beta_p": 1.0})
-    # not the left side, where the wave enters; y is held
-    assert defaults(other)["right, matched β"] == {"boundary.right.beta_p": "matched"}
-    near = with_changes(own, {"boundary.right.beta_p": 1.005 * beta})
-    assert not any("matched" in name for name in defaults(near))
 
 
 TUNNEL = {

@@ -2,16 +2,13 @@
 
 import csv
 from contextlib import contextmanager
-from dataclasses import replace
 
 import h5py
 import numpy as np
 import pytest
 
-from dembound.accuracy import runner
 from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
-from dembound.accuracy.chart.front import front
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import choices_of, combinations
@@ -109,22 +106,6 @@ def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted,
     assert found.cheapest(1.0) in (2, 3)
 
 
-def test_of_equally_accurate_choices_the_cheaper_or_else_the_first_is_named(charted, bar) -> None:
-    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
-    found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
-    for costs, named in (
-        ((1.0, 0.9), "boundary.right viscous (10 %, 0.95 s)"),  # one cost and one error: the first
-        ((1.0, 0.4), "boundary.right free (10 %, 0.4 s)"),
-    ):
-        lines = [
-            replace(line, outcome=replace(line.outcome, cpu=[cost]), errors=[replace(line.errors[0], rms=rms)])
-            for line, cost, rms in zip(found.lines, costs, (0.1001, 0.1), strict=True)  # a thousandth is no difference
-        ]
-        placed = study._placed(lines)
-        equal = replace(found, lines=placed, front=front([line.point for line in placed]))
-        assert equal.sentence.endswith(f"smallest error (equal within 5 %): {named}")
-
-
 FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
 """A bar for which no exact solution is known."""
 
@@ -201,18 +182,6 @@ def test_random_packings_are_realisations_but_boxes_elsewhere_have_the_same_bric
     cases = [choice.case for choice in choices]
     assert DiskJudge().cautions(cases[:2]) == ()
     assert len(DiskJudge().cautions(cases)) == 1
-
-
-def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, monkeypatch, tmp_path) -> None:
-    # a pulse from the left that would tear the free end of the longer bar: at the case's own end it goes on
-    case = bar({**SPALLING_DISKS, "boundary.right": {"type": "viscous"}, "run.duration": 0.03})
-    sides = {"boundary.right": [{"type": "viscous"}, {"type": "viscous", "beta_p": 0.5}]}
-    boxes = []
-    measured = runner.measure
-    monkeypatch.setattr(runner, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
-    found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
-    assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
-    assert found.reference.name == "extended"
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from small_cases import SPALLING, small
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.judges import extended
 from dembound.accuracy.of_bars.causes import NO_ECHO, NO_GRID, causes_of_bar
-from dembound.formulas.cause import SIDES, STEP, Causes
+from dembound.formulas.cause import SIDES, Causes
 from dembound.formulas.history import History
 from dembound.kinds import with_changes
 from dembound.running import plan
@@ -99,25 +99,6 @@ def test_the_error_of_ends_is_the_difference_from_a_longer_bar(name: str) -> Non
             true = values[:, 0] - longer[monitor].values[quantity][:, 0]
             rest = share(causes, SIDES, monitor, quantity) - true
             assert np.linalg.norm(rest) < 1e-5 * np.linalg.norm(values)
-
-
-@pytest.mark.parametrize("name", ["m = 3, corrected ends", "viscous end, β = 0.7"])
-def test_the_error_of_the_time_step_is_the_difference_from_shorter_ones(name: str) -> None:
-    # of second order: steps 16 times shorter leave 1/256 of it, and of short waves, for which it is not, some more; the
-    # pulse is smooth, as both bars have to see the same one in their steps
-    case = with_changes(scene(name), RICKER)
-    recorded, causes = estimated(case)
-    longer = extended(case).case if SIDES in [cause.name for cause in causes.found] else case
-    own, _ = recorded_of(longer)
-    shorter, _ = recorded_of(with_changes(longer, {"run.courant": longer.run.courant / 16}))
-
-    for monitor in recorded:
-        true = (
-            own[monitor].values["velocity"][:, 0]
-            - shorter[monitor].values["velocity"][::16, 0][: len(own[monitor].time)]
-        )
-        rest = share(causes, STEP, monitor, "velocity") - true
-        assert np.linalg.norm(rest) < 0.02 * np.linalg.norm(true)
 
 
 def test_nothing_is_said_about_a_bar_that_has_broken_but_about_the_time_before() -> None:

@@ -8,7 +8,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
+from dembound.accuracy.of_disks.sliding import settled_of
 from dembound.accuracy.runner import at_step, measure
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
@@ -140,22 +140,6 @@ def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     assert found.share("top", "velocity", recorded["top"]) == pytest.approx(true, rel=0.3)
     (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)  # type: ignore[arg-type]
     assert true > 3.0 * formula.share("top", "velocity", recorded["top"])
-
-
-def test_errors_of_contacts_grow_as_the_step_over_its_limit() -> None:
-    case = small(GRAVEL)
-    assert isinstance(case, DiskCase)
-    planned = plan(case)
-    scene, step = planned.scene, planned.time_step
-    assert isinstance(scene, DiskScene)
-    for most in (1e9, 0.0):  # by the given disks, by larger ones
-        companions = Companions(case, scene, step, most)
-        whole, half = (errors_of_steps(companions, scene, each)["top"]["velocity"] for each in (step, 0.5 * step))
-        np.testing.assert_allclose(half, 0.5 * np.asarray(whole))
-        finer = plan(with_changes(case, {"packing.radius": 0.125})).scene
-        assert isinstance(finer, DiskScene)
-        same = errors_of_steps(companions, finer, 0.5 * step)["top"]["velocity"]  # as far below the limit
-        assert np.linalg.norm(same) == pytest.approx(np.linalg.norm(np.asarray(whole)), rel=0.2)  # at another place
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:

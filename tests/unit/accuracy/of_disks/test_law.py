@@ -1,6 +1,5 @@
 """The elastic law in place of a history-dependent one, where the body remains elastic."""
 
-import math
 from functools import cache
 from typing import Any
 
@@ -123,18 +122,6 @@ def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
     without = with_changes(own_twin().case, fixed)
     one, other = (measure(case, Progress())[0].motions["beside"].velocity for case in (settled, without))
     np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
-
-
-def test_bonds_of_any_strength_always_hold() -> None:
-    material = PUSHED["material"] | {"law": "linearpbond", "contact_share": 0.0}
-    tables = {key: value for key, value in CONFINED.items() if key != "static"} | {"material": material}
-    case = small(tables)
-    assert isinstance(case, DiskCase)
-    found = twin_of(case)
-    assert found is not None
-    assert math.isinf(found.factor)
-    assert found.words == "the elastic law, which always holds"
-    assert found.stress == 0.0
 
 
 def _recorded(gauges: Motions) -> dict[str, History]:

@@ -9,7 +9,6 @@ from small_cases import OPEN, SOIL, Tables, small
 from dembound.accuracy.estimate import causes_of
 from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.enlarged import enlarged
 from dembound.accuracy.runner import measure
 from dembound.disks.material.layered import materials_in
 from dembound.disks.scene import build
@@ -75,14 +74,6 @@ def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them
     # layers of whole cells of the largest disks
     thin = small(COLUMN, changes={"layer.sand.thickness": 0.75, "run.duration": 0.01})
     assert coarser(thin, build(thin), 1e-4, 0.3).case.joints[0] == pytest.approx(8.5)
-
-
-def test_layers_stay_where_they_are_when_the_top_moves_away() -> None:
-    scene = build(small(COLUMN | OPEN))
-    wider = enlarged(scene, {"top": 2, "bottom": 1})
-    assert wider.packing.box[3] == pytest.approx(17.5)
-    assert wider.joints == pytest.approx(scene.case.joints)
-    np.testing.assert_array_equal(build(wider).ground.layer_of(np.array([8.4, 8.6])), [1, 0])
 
 
 def test_a_side_reflects_as_the_mean_of_its_layers() -> None:

@@ -13,7 +13,6 @@ from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.exact import problem_of
 from dembound.accuracy.of_disks.exact.lamb import LambProblem
 from dembound.casefile import Case
-from dembound.disks.reflection.arrivals import arrivals_of
 from dembound.disks.scene import build
 from dembound.kinds import checked, with_changes
 
@@ -86,19 +85,6 @@ def test_exact_solutions_are_as_far_from_loads_and_hold_as_long(both) -> None:
         assert own.load.force == (4e5 if both[0].side("left").is_mirror else 2e5)
     else:
         assert other.blast.surface == own.blast.surface + BY[1]
-
-
-def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
-    for side in ("left", "right", "bottom"):
-        own, other = (arrivals_of(case, side, build(case).ground) for case in both)
-        assert [each.name for each in own] == [each.name for each in other]
-        for one, another in zip(own, other, strict=True):
-            np.testing.assert_allclose(another.angles, one.angles, atol=1e-9)
-            np.testing.assert_allclose(another.shares, one.shares, atol=1e-12)
-    springs = [case.side("left").stiffest("left", case.packing.box) for case in both]
-    assert springs[0] == springs[1]
-    if both[0].side("left").type == "viscoelastic":
-        assert springs[0].distance == 20.0
 
 
 @pytest.mark.parametrize("height", [20.0, 50.0])

@@ -54,16 +54,6 @@ def changed(old: str, new: str, text: str = GOOD) -> str:
     return text.replace(old, new)
 
 
-def test_a_good_case_is_read_as_it_stands() -> None:
-    case = loads(GOOD)
-
-    assert isinstance(case, BarCase)
-    assert (case.bar.length, case.bar.cells, case.bar.attenuation) == (1.0, 100, 0.0)
-    assert list(case.boundary) == ["left", "right"]
-    (load,) = case.load
-    assert (load.pressure, load.side, load.nodes, load.wave) == (12e6, "left", 3, "pulse")
-
-
 def test_an_end_is_loaded_by_loads_and_by_waves() -> None:
     for changes, loaded in (
         ({"load": []}, "left"),  # by the wave that its dashpot lets in
@@ -138,13 +128,6 @@ strength = 10e6 | fracture_energy = 500 | bar.fracture_energy: needs strength or
 def test_each_mistake_gets_one_plain_line(old: str, new: str, line: str) -> None:
     (found,) = problems_of(changed(old, new))
     assert found.startswith(line)
-
-
-def test_two_spacings_are_too_few_with_soft_ends() -> None:
-    two = changed("spacing = 0.01", "spacing = 0.5")
-    assert problems_of(changed("horizon = 3", "horizon = 1", two)) == [
-        "bar.spacing: makes 2 of them in the bar, with soft ends it must be 3 or more"
-    ]
 
 
 def test_no_load_pushes_an_end_whose_motion_is_prescribed() -> None:

@@ -4,7 +4,7 @@ import pytest
 from small_cases import problems_of, rows
 
 from dembound.casefile.bar import BarCase
-from dembound.kinds import loads, with_changes
+from dembound.kinds import loads
 
 GOOD = """
 [bar]
@@ -64,13 +64,6 @@ def test_a_range_has_what_it_does_not_give_from_the_bar() -> None:
     assert (case.bar.nodes, case.bar.contacts) == (21 + 21 + 100, (False, True, False))
     assert case.bar.travel_time == pytest.approx(0.2 / 5000 + 0.05 / 1000 + 1.0 / 5000, rel=1e-12)
     assert "length" not in case.bar.given()
-
-
-def test_changes_name_a_range() -> None:
-    case = with_changes(loads(GOOD), {"bar.range.specimen.length": 0.1, "bar.range.1.velocity": 5.0})
-    assert isinstance(case, BarCase)
-    assert case.bar.length == pytest.approx(1.301, rel=1e-15)
-    assert case.bar.range[0].velocity == 5.0
 
 
 MISTAKES = r"""

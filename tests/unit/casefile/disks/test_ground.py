@@ -57,12 +57,6 @@ def test_disks_and_ground_may_begin_anywhere() -> None:
     assert case(box="size = [20.0, 20.0]\norigin = [20.0, 20.0]\n", sides=ALL[:3]).reaches_surface
 
 
-def test_an_origin_of_the_ground_needs_its_size() -> None:
-    assert problems(ground="[ground]\norigin = [-5.0, 0.0]\n", sides=()) == [
-        "ground.origin: [ground] has no size, so that the disks fill it; give ground.size, or packing.origin"
-    ]
-
-
 def test_the_box_lies_in_the_ground() -> None:
     for origin in ("[-1.0, 10.0]", "[20.0, 30.0]"):
         (line,) = problems(box=f"size = [20.0, 20.0]\norigin = {origin}\n")

@@ -3,11 +3,7 @@
 import pytest
 from small_cases import BODY, problems_of, rows
 
-from dembound.casefile.types import HOLES
-from dembound.table import name_of
-
 CIRCLE = 'type = "circle"\ncentre = [5.0, 2.5]\nradius = 1.0'
-SHAPES = ", ".join(sorted(f'"{name_of(shape)}"' for shape in HOLES))
 STATIC = "[static]\nstress = [-1e6, -1e6, 0.0]\n"
 
 
@@ -37,11 +33,6 @@ type = "polygon"\npoints = [[1, 1], [2, 2]] | hole[1, tunnel].points: has 2, mus
 def test_each_mistake_gets_one_plain_line(keys: str, line: str) -> None:
     (found,) = problems(hole(keys))
     assert found.startswith(line)
-
-
-def test_types_are_named_and_names_unique() -> None:
-    assert problems(hole("")) == [f"hole[1, tunnel].type: is missing, must be one of {SHAPES}"]
-    assert problems(hole(), hole(), hole(name="shaft")) == ['hole[2].name: "tunnel" is taken by hole[1]']
 
 
 def test_a_hole_beside_the_scene_is_refused() -> None:

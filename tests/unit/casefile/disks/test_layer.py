@@ -50,14 +50,6 @@ def test_a_layer_with_targets_takes_no_stiffness_from_the_material() -> None:
         }
 
 
-def test_heights_are_those_of_the_ground_round_the_disks() -> None:
-    """The surface is the top of the ground, and layers may begin in the continuum below."""
-    sides = "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in ("left", "right", "bottom", "top"))
-    deep = "[ground]\nsize = [10.0, 20.0]\norigin = [0.0, -10.0]\n" + sides
-    case = loads(BODY + deep + SOIL.replace("bottom = 2.0", "bottom = -12.0"))
-    assert case.joints == (8.5, -12.0)
-
-
 MISTAKES = r"""
 thickness = 1.5 | thickness = 1.5\nbottom = 3.5 | layer[1, clay].bottom: is not allowed together with thickness
 thickness = 1.5 | thickness = 0.99 | layer[1, clay].thickness: is 0.99, must be at least 1 (m): the layer begins at 5 m

@@ -3,7 +3,6 @@
 import pytest
 from small_cases import BODY, problems_of, rows
 
-from dembound.casefile.disks.load import Load
 from dembound.kinds import loads
 
 TAP = '[wave.tap]\ntype = "cubic_spline"\namplitude = 1.0\nperiod = 0.05\n'
@@ -15,16 +14,6 @@ def load(*keys: str, name: str = "a") -> str:
 
 def problems(extra: str) -> list[str]:
     return problems_of(BODY + TAP + extra)
-
-
-def test_complete_loads_say_what_acts_along_which_axes() -> None:
-    for keys, vector, axes in (
-        ({"force": (0.0, -4.5e5), "position": (5.0, 5.0)}, (0.0, -4.5e5), (1,)),
-        ({"force": (1.0, 2.0), "region": (0.0, 0.0, 1.0, 5.0), "wave": "tap"}, (1.0, 2.0), (0, 1)),
-        ({"acceleration": (3.0, 0.0)}, (3.0, 0.0), (0,)),
-    ):
-        complete = Load(name="a", **keys)
-        assert (complete.key in keys, complete.vector, complete.axes) == (True, vector, axes)
 
 
 MISTAKES = r"""

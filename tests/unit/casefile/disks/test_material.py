@@ -9,23 +9,6 @@ STIFFNESS = {"emod": 1e9, "pb_emod": 1e9}
 SPEED = {"p_wave_speed": 1e3}
 
 
-@pytest.mark.parametrize(
-    "keys",
-    [
-        SPEED | {"s_wave_speed": 700.0, "along": "y", "contact_share": 1.0, "fric": 0.1},
-        {"young": 6e10, "poisson": 0.5, "plane": "stress", "along": "x"},
-        STIFFNESS | {"s_wave_speed": 700.0},
-        {"s_wave_speed": 700.0, "contact_share": 0.2},
-        STIFFNESS | {"law": "linearpbond", "pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0},
-        STIFFNESS | {"law": "linearpbond", "locked_in": 5e6, "geometry": "reference", "elastic_start": False},
-        STIFFNESS | {"law": "linearpbond", "fric": 0.5, "dp_nratio": 0.2, "dp_sratio": 0.2, "elastic_start": False},
-    ],
-)
-def test_complete_stiffness_and_bonds_are_accepted(keys: dict[str, float]) -> None:
-    material = Material(density=2500.0, **keys)
-    assert {key: getattr(material, key) for key in keys} == keys
-
-
 BONDED = {"law": "linearpbond", **STIFFNESS}
 
 

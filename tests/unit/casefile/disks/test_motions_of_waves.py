@@ -55,7 +55,3 @@ def test_elsewhere_it_is_refused_in_one_line(motion: str, sides: str, message: s
     assert len(problems) == 1, problems
     assert problems[0].startswith("wave.w.motion: ")
     assert message in problems[0]
-
-
-def test_a_side_of_prescribed_velocity_takes_motion_within() -> None:
-    assert problems_of(text("within", PRESCRIBED)) == []

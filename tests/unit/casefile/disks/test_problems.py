@@ -107,14 +107,6 @@ def monitor(name: str, position: str) -> str:
     return f'[[monitor]]\nname = "{name}"\nposition = {position}\n'
 
 
-def test_monitors_lie_in_the_scene() -> None:
-    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10, 5]")) == []
-    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10.5, 5]") + monitor("c", "[1, -1]")) == [
-        "monitor[2, b].position: is [10.5, 5.0], must be in the scene, [0, 0] to [10, 5] (m)",
-        "monitor[3, c].position: is [1.0, -1.0], must be in the scene, [0, 0] to [10, 5] (m)",
-    ]
-
-
 def test_monitors_may_lie_in_a_continuum() -> None:
     left, base = '[boundary.left]\ntype = "outside"\n', '[boundary.bottom]\ntype = "outside"\n'
 

@@ -34,9 +34,8 @@ def shares(*of, **others) -> list[float]:
     return list(found.shares.values())
 
 
-@pytest.mark.parametrize("motion", ["p", "s"])
 @pytest.mark.parametrize(
-    "along", [{"type": "viscous"}, {"type": "viscoelastic", "distance": 10.0}], ids=lambda t: t["type"]
+    ("motion", "along"), [("p", {"type": "viscous"}), ("s", {"type": "viscoelastic", "distance": 10.0})]
 )
 def test_waves_from_all_sides_are_alike(motion: str, along: dict) -> None:
     up = shares("bottom", along, motion)

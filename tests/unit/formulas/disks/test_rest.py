@@ -66,8 +66,6 @@ def test_nothing_is_said_without_sliding_and_nothing_is_known_with_breaks() -> N
         (cause,) = causes_of_rest(body, moved, STATIC | broken).found
         assert cause.how == "unknown"
         assert cause.words.startswith("3 bonds broke while")
-    (cause,) = causes_of_rest(body, moved, STATIC | {"before": STATIC | {"elastic": True}}).unknown
-    assert "hole" in cause.words
     cave = Circle(type="circle", name="cave", centre=(5.0, 1.2), radius=0.6)
     (cause,) = causes_of_rest(replace(body, case=replace(body.case, hole=(cave,))), moved, STATIC).unknown
     assert "hole" in cause.words

@@ -64,14 +64,6 @@ def test_strengths_that_do_not_follow_end_with_the_best_trial() -> None:
     assert search.best(trials).deviation(targets) == min(trial.deviation(targets) for trial in trials)
 
 
-def test_strengths_that_grow_more_than_those_of_bonds() -> None:
-    targets = {"ucs": 400e6}
-    trials = list(Search(targets).trials(Rock(power=1.1).measure))
-
-    assert len(trials) <= 3
-    assert trials[-1].deviation(targets) <= CLOSE
-
-
 def test_one_strength_scales_both_of_the_bonds() -> None:
     rock, targets = Rock(), {"tension": 10e6}
     *_, last = Search(targets, cohesion=0.8).trials(rock.measure)

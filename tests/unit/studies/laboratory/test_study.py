@@ -10,7 +10,7 @@ from recorded import contents
 from small_cases import PUSHED, small
 
 import dembound
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError
 from dembound.results.recording import LoadingCurve
 from dembound.studies.laboratory import study
 from dembound.studies.sweep import perform
@@ -57,23 +57,6 @@ def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> 
     assert list(whole.warnings) == []
     with pytest.raises(CaseError, match='quantity: is "strenght", must be one of strength'):
         whole.statistic("strenght")
-
-
-def test_only_the_first_seed_has_a_file_for_paraview_and_failures_are_raised(tmp_path, monkeypatch) -> None:
-    packing = {"pattern": "B", "size": [6.0, 6.0], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5}
-    case = small(LATTICE, "rock", {"packing": packing, "material.emod": 1e9})
-    tasks = []
-
-    def failed(task):
-        tasks.append(task)
-        return perform.Outcome(task.name, failure="no memory")
-
-    monkeypatch.setattr("dembound.studies.sweep.workers.perform", failed)
-    with pytest.raises(RunError, match="seed=0: no memory"):
-        dembound.laboratory_test(case, "ucs", tmp_path, seeds=3)
-
-    assert ['paraview = "vtkhdf"' in task.text for task in tasks] == [True, False, False]
-    assert all('paraview = "none"' in task.text for task in tasks[1:])
 
 
 @pytest.mark.parametrize(

@@ -89,32 +89,6 @@ def test_layers_respond_as_in_a_direct_run(tmp_path):
     assert [each.limits.tension for each in found] == [1e5, 2e5]
 
 
-@pytest.mark.slow
-def test_a_measured_record_is_the_same_function_as_in_a_direct_run(tmp_path):
-    """At a sixteenth of its step, and within the loss by lines at an eighth, of which there is a warning."""
-    spacing, count = 2e-4, 25
-    times = 16 * spacing * np.arange(count)
-    values = np.sin(0.7 * np.pi * np.arange(count)) * np.sin(np.pi * np.arange(count) / (count - 1)) ** 2
-    values[-1] = 0.0
-    np.savetxt(tmp_path / "quake.txt", np.column_stack([times, values]))
-    errors, said = [], []
-    for number, finer in enumerate((16, 8)):
-        case = small(PUSHED, f"l{number}", {"run.duration": 0.1})
-        library = Library(build_library(case, 16 * spacing / finer, tmp_path))
-        (record,) = read_records([f"shake={tmp_path / 'quake.txt'}"], library.inputs, library.clock)
-        path = tmp_path / f"{finer}" / "run.h5"
-        write_response(library, record, path)
-        direct = run_case(recorded_case(path), tmp_path / f"direct{finer}") / "run.h5"
-        errors.append(max(found.peak for found in compare(direct, [path], "velocity")))
-        said.append(record.losses)
-    assert errors[0] < 1e-9
-    # at 0.35 of the rate sinc²(0.35/8) is 0.6 %, less the 0.16 % that the direct run loses
-    assert 1e-3 < errors[1] < 1e-2
-    assert said[0] == ()
-    (warning,) = said[1]
-    assert "--spacing 0.0002 histories are those of a direct run" in warning
-
-
 def test_inputs_without_a_record_are_silent(heavy, tmp_path):
     argument = records(heavy, tmp_path)[1]
     (record,) = read_records([argument], heavy.inputs, heavy.clock)
