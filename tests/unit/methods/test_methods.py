@@ -44,21 +44,6 @@ def test_what_a_method_does_at_first(keys: dict, name: str, largest: int, carryi
     assert np.array_equal(found.stages(ROD)[0].stiffness(), found.begin(ROD).stiffness())
 
 
-def test_finite_differences_ask_until_the_first_break() -> None:
-    found = method("finite_difference")
-    bonds = found.begin(ROD)
-    assert bonds.triggered(pulled(10, 20)).tolist() == [10, 20]
-    name = found.on_trigger(bonds, pulled(10, 20))
-
-    assert bonds.horizon == 0
-    assert name == "finite differences"
-    assert not bonds.triggers.any()
-    # they are left whole: the kernel breaks them
-    assert np.all(bonds.spring == ROD.springs)
-    assert np.all(bonds.spring_broken == -1)
-    assert len(found.stages(ROD)) == 1
-
-
 @pytest.mark.parametrize("corrected", [False, True])
 def test_peridynamics_never_asks(corrected: bool) -> None:
     found = method("peridynamics", horizon=3, corrected_ends=corrected)

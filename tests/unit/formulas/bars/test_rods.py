@@ -6,7 +6,7 @@ from estimated_bars import BAR, RANGES, WALL
 from small_cases import small
 
 from dembound.bar.scene import build_bar
-from dembound.formulas.bars.rods import Rods, Window, needed
+from dembound.formulas.bars.rods import Rods, Window
 
 S = 40.0 + 2j * np.pi * np.array([0.0, 300.0, 2000.0, 9000.0])
 SPEED, IMPEDANCE = 2740.0, 2620.0 * 2740.0
@@ -88,15 +88,3 @@ def test_a_lasting_signal_does_not_jump_at_the_end() -> None:
 
     shifted = np.clip((window.time - 0.1234) / 0.2, 0.0, 1.0)
     np.testing.assert_allclose(late, shifted**2 * (3.0 - 2.0 * shifted), atol=1e-4)
-
-
-def test_smooth_signals_need_few_frequencies() -> None:
-    window = Window.up_to(1.0, 0.0005)
-    bell = window.transform(lambda time: np.exp(-(((time - 0.5) / 0.05) ** 2)))
-
-    count = needed([bell])
-
-    assert count < 0.1 * len(window.s)
-    rest = np.linalg.norm(bell[count:]) / np.linalg.norm(bell)
-    assert rest <= 1e-8
-    assert needed([bell[:4], 0.0 * bell]) == 4

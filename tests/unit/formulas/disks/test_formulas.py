@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_cases import GRAINS, SURROUNDED, Tables, small
+from small_cases import SURROUNDED, Tables, small
 
 from dembound.accuracy.of_disks.causes import causes_of_run
 from dembound.accuracy.runner import measure
@@ -88,18 +88,6 @@ def test_waves_are_late_by_the_mean_of_their_ways_and_larger_steps_make_them_ear
     np.testing.assert_allclose(step, -0.64 * grid + 4e-4**2 / 8.0 * second, atol=0.03 * np.abs(grid).max())
 
 
-def test_single_disks_at_the_edge_of_a_random_packing_are_named():
-    times = np.linspace(0.0, 0.03, 31)
-    motion = {quantity: np.zeros((31, 2)) for quantity in ("velocity", "displacement")}
-    at = {"edge": (7.8, 2.0), "inside": (4.0, 2.0), "free": (4.0, 3.9)}
-    record = {name: History(np.array(place), times, motion) for name, place in at.items()}
-    found = causes_of_run(small(GRAINS, changes={"monitor": []}), record, 1e-4, 1e6, 1e6)
-    (edge,) = [cause for cause in found.unknown if "single disks" in cause.words]
-    assert edge.words.endswith("at edge")
-    assert edge.of_disks
-    assert not causes_of_run(small(LAYER), recorded(pulse(TIME)), 1e-4, 1e6, 1e6).unknown
-
-
 @pytest.mark.parametrize(
     ("changes", "is_known"),
     [
@@ -169,18 +157,6 @@ def test_waves_that_come_back_to_disks_held_at_their_centres_are_early(bottom, t
         difference = (own.values[quantity][:, column] - other)[inside]
         expected = sum(2.0 / 3.0 * np.asarray(each.parts["top"][quantity])[:, column][inside] for each in found)
         assert np.linalg.norm(difference - expected) < 0.24 * np.linalg.norm(difference)
-
-
-def test_springs_of_a_driven_side_and_held_sides_without_an_estimate_are_named() -> None:
-    springs = {"type": "viscoelastic_input", "wave_p": "pulse", "distance": 40.0}
-    case = small(LAYER | {"boundary": {"bottom": springs}})
-    found = causes_of_run(case, recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
-    assert any(each.name == "bottom side" and "springs" in each.words for each in found.unknown)
-    # a driven side that a load's waves reach, too
-    load = {"name": "hammer", "force": [0.0, 1.0], "position": [2.25, 12.25], "wave": "pulse"}
-    driven = {"boundary": {"bottom": {"type": "velocity", "wave_p": "pulse"}}, "load": [load]}
-    found = causes_of_run(small(LAYER | driven), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
-    assert any(line.startswith("bottom: disks are held at centres") for line in found.limits)
 
 
 def test_single_disks_at_a_random_surface_err_as_waves_at_an_angle_strain_it() -> None:

@@ -13,8 +13,6 @@ from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, 
 from dembound.kinds import with_changes
 from dembound.running import Progress, plan
 
-HOLE = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.0, 6.0, 1.0]}
-
 
 def lattice(**changes: object) -> DiskScene:
     """Disks of 0.5 m in 10 m × 2.5 m, the first at 0.25 m."""
@@ -46,14 +44,6 @@ def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], 
     row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
     np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
     assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
-
-
-def test_a_patch_has_no_disks_that_a_hole_has_taken() -> None:
-    scene = lattice(hole=[HOLE])
-    patch = patch_around(scene, np.array([5.0, 1.2]))
-    assert patch[4] == pytest.approx([4.75, 1.75]) or patch[4] == pytest.approx([5.25, 1.75])
-    disks = {(round(x, 6), round(y, 6)) for x, y in scene.positions}
-    assert all((round(x, 6), round(y, 6)) in disks for x, y in patch)
 
 
 def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:

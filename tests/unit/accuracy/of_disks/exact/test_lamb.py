@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks.exact import lamb as module
 from dembound.accuracy.of_disks.exact import write_exact
@@ -12,33 +13,16 @@ from dembound.kinds import loads, with_changes
 
 ROCK = Solid(2500.0, 300.0, 300.0 / np.sqrt(2.0))
 
-CASE = """
-[packing]
-pattern = "A"
-size = [10.0, 5.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 300.0
-fric = 0.5
-[wave.pulse]
-type = "cubic_spline"
-amplitude = 1.0
-period = 0.1
-[[load]]
-name = "hammer"
-force = [0.0, -1000.0]
-position = [4.75, 4.75]
-wave = "pulse"
-[[monitor]]
-name = "before"
-position = [2.75, 4.75]
-[[monitor]]
-name = "behind"
-position = [6.75, 4.75]
-[run]
-duration = 0.2
-"""
+CASE = tomli_w.dumps(
+    {
+        "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
+        "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+        "wave": {"pulse": {"type": "cubic_spline", "amplitude": 1.0, "period": 0.1}},
+        "load": [{"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}],
+        "monitor": [{"name": "before", "position": [2.75, 4.75]}, {"name": "behind", "position": [6.75, 4.75]}],
+        "run": {"duration": 0.2},
+    }
+)
 
 
 def histories(path, case):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks import exact as module
 from dembound.accuracy.of_disks.exact import exact_motions
@@ -12,47 +13,18 @@ from dembound.errors import CaseError
 from dembound.exact import Solid, cavity_motion
 from dembound.kinds import loads, with_changes
 
-CASE = """
-[packing]
-pattern = "A"
-size = [20.0, 20.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 300.0
-fric = 0.5
-[boundary.left]
-type = "viscous"
-[boundary.right]
-type = "viscous"
-[boundary.bottom]
-type = "viscous"
-[boundary.top]
-type = "viscous"
-[wave.pulse]
-type = "cosine"
-amplitude = 2.0
-period = 0.05
-start = 0.01
-[[hole]]
-name = "hole"
-type = "circle"
-centre = [10.0, 10.0]
-radius = 2.0
-[[load]]
-name = "blast"
-hole = "hole"
-pressure = 1e6
-wave = "pulse"
-[[monitor]]
-name = "right"
-position = [13.25, 10.25]
-[[monitor]]
-name = "below"
-position = [8.25, 6.25]
-[run]
-duration = 0.15
-"""
+CASE = tomli_w.dumps(
+    {
+        "packing": {"pattern": "A", "size": [20.0, 20.0], "radius": 0.25},
+        "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+        "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")},
+        "wave": {"pulse": {"type": "cosine", "amplitude": 2.0, "period": 0.05, "start": 0.01}},
+        "hole": [{"name": "hole", "type": "circle", "centre": [10.0, 10.0], "radius": 2.0}],
+        "load": [{"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}],
+        "monitor": [{"name": "right", "position": [13.25, 10.25]}, {"name": "below", "position": [8.25, 6.25]}],
+        "run": {"duration": 0.15},
+    }
+)
 
 SOLID = Solid(2500.0, 300.0, 300.0 / math.sqrt(2.0))
 BLAST = {"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}

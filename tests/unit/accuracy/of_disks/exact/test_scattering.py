@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks import exact as module
 from dembound.accuracy.of_disks.exact import exact_motions
@@ -12,51 +13,20 @@ from dembound.errors import CaseError
 from dembound.exact import PlaneWave, Solid, scattered_motion
 from dembound.kinds import loads, with_changes
 
-CASE = """
-[ground]
-size = [100.0, 120.0]
-[packing]
-pattern = "A"
-size = [20.0, 20.0]
-origin = [40.0, 40.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-fric = 0.5
-[outside]
-element = 10.0
-[boundary.left]
-type = "outside"
-[boundary.right]
-type = "outside"
-[boundary.bottom]
-type = "outside"
-[boundary.top]
-type = "outside"
-[incident]
-type = "sv"
-angle = 30.0
-wave = "pulse"
-point = [50.0, 20.0]
-[wave.pulse]
-type = "cubic_spline"
-amplitude = 0.5
-period = 0.1
-[[hole]]
-name = "tunnel"
-type = "circle"
-centre = [50.0, 50.0]
-radius = 5.0
-[[monitor]]
-name = "left"
-position = [44.5, 50.5]
-[[monitor]]
-name = "above"
-position = [50.5, 56.5]
-[run]
-duration = 0.3
-"""
+CASE = tomli_w.dumps(
+    {
+        "ground": {"size": [100.0, 120.0]},
+        "packing": {"pattern": "A", "size": [20.0, 20.0], "origin": [40.0, 40.0], "radius": 0.5},
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+        "outside": {"element": 10.0},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+        "incident": {"type": "sv", "angle": 30.0, "wave": "pulse", "point": [50.0, 20.0]},
+        "wave": {"pulse": {"type": "cubic_spline", "amplitude": 0.5, "period": 0.1}},
+        "hole": [{"name": "tunnel", "type": "circle", "centre": [50.0, 50.0], "radius": 5.0}],
+        "monitor": [{"name": "left", "position": [44.5, 50.5]}, {"name": "above", "position": [50.5, 56.5]}],
+        "run": {"duration": 0.3},
+    }
+)
 
 SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
 
