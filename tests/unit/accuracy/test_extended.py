@@ -178,30 +178,6 @@ def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
     assert found.case.run.courant == 0.99  # as that of the case
 
 
-def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar) -> None:
-    places = {"in": (4.1, 3.9), "beside": (-1.4, 2.2), "low": (4.2, -1.7)}
-    case = bar(
-        {
-            "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
-            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-            "outside": {"element": 2.0, "margin": 2},
-            "motion.held": [],
-            "load": [{"name": "f", "force": [0.0, -1.0], "region": [9.0, 3.5, 11.5, 4.0], "wave": "pulse"}],
-            "monitor": [{"name": name, "position": list(place)} for name, place in places.items()],
-            "run.duration": 0.05,
-        }
-    )
-    found = extended(case)
-    small, large = build(case), build(checked(found.case))
-
-    assert len(small.between) == 2
-    assert not large.between
-    for name, place in large.monitored.items():
-        np.testing.assert_allclose(place, small.monitored[name], atol=1e-9)
-    assert found.case.load == case.load
-    assert f"{large.disk_count:,} particles" in found.sentence
-
-
 def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar) -> None:
     slope = {"name": "slope", "type": "polygon", "points": [[4.0, 11.0], [6.0, 6.0], [11.0, 6.0], [11.0, 11.0]]}
     weight = {"name": "weight", "acceleration": [0.0, -9.81]}

@@ -7,7 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from small_cases import PULLED, PUSHED, TORN, small
+from small_cases import PUSHED, TORN, small
 
 from dembound.accuracy import repeat
 from dembound.accuracy.estimate import estimate_results
@@ -104,19 +104,6 @@ def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
     assert list(cracked([0.0] * 10).one_draw()) == []
     assert len(list(cracked([0.0] * 11).one_draw())) == 1
     assert list(replace(cracked([0.0] * 11), in_bar=True).one_draw()) == []  # several bonds break at one place
-
-
-def test_a_bar_is_repeated_too(tmp_path) -> None:
-    """The size of its cracks is the largest spacing; its step was given as a Courant number."""
-    folder = run_case(small(PULLED, "bar", {"output.snapshots": 0}), tmp_path)
-    found = estimate_results(folder, repeat=True).repeat
-
-    assert found.own.in_bar
-    assert found.own.size == pytest.approx(0.01)
-    assert found.own.unit == "J"
-    assert found.other.time_step == pytest.approx(0.98 * found.own.time_step)
-    assert found.common > 0.9
-    assert replace(found, other=found.own).summary()["common"] == 1.0
 
 
 def test_many_cracks_need_no_monitor_but_a_repeat_needs_cracks(torn, tmp_path) -> None:

@@ -125,17 +125,6 @@ def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalli
     assert errors["spacing 0.025 m, courant 1"] < 0.05 * errors["spacing 0.025 m, courant 0.9"]
 
 
-def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, monkeypatch) -> None:
-    def impossible(*_):
-        raise CaseError(["bar.spacing: is too small"])
-
-    monkeypatch.setattr(BarJudge, "finer", impossible)
-    found, _ = charted(spalling(FADING), repeats=1)
-    assert (found.reference.name, found.reference.own) == ("finest", (1,))
-    (line,) = found.left_out
-    assert line == "the reference is the finest choice, as a finer run is not possible: bar.spacing: is too small"
-
-
 def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
     found, _ = charted(spalling(), repeats=1)
     place, time = (found.lines[1].outcome.findings[name].value for name in ("spall place", "spall time"))

@@ -9,7 +9,7 @@ import pytest
 from small_cases import small
 
 from dembound.accuracy.of_disks.cost import Counted, planned_cost
-from dembound.accuracy.of_disks.options import Built, Options
+from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.of_disks.steps import MOST, Along
 from dembound.casefile.disks import DiskCase
 from dembound.running import plan
@@ -96,17 +96,6 @@ def test_counted_costs_are_those_of_plans(tables: dict[str, Any], factors: tuple
             assert counted.disks == pytest.approx(planned.disks, rel=0.02), option.words
             assert counted.nodes == pytest.approx(planned.nodes, rel=0.02), option.words
     assert len(names) > 1 or tables is FOUR
-
-
-def test_sides_farther_away_cost_as_many_bricks_as_are_built() -> None:
-    options = options_of(BAR)
-    found = [each for each in options.of(1.0) if each.wider]
-    assert {each.wider for each in found} >= {0.25, 0.5}
-    for option in found:
-        built = options.build(option)
-        assert isinstance(built, Built)
-        plain = next(each for each in options.of(1.0) if not each.wider and each.arrangement == option.arrangement)
-        assert option.cost / plain.cost == pytest.approx(built.case.packing.extent[0] / 60.0, rel=0.02)
 
 
 def test_choices_keep_what_is_to_be_kept() -> None:

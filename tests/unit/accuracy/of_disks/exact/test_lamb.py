@@ -44,14 +44,6 @@ def test_a_load_on_the_open_surface_moves_both_sides_alike(tmp_path):
     np.testing.assert_allclose(before, behind * [-1.0, 1.0, 1.0], atol=1e-12 * down.max())
 
 
-def test_a_mirror_plane_doubles_the_load_and_stands_at_the_side(tmp_path):
-    case = with_changes(loads(CASE), {"boundary.left.type": "symmetry", "load": [{**HAMMER, "position": [0.25, 4.75]}]})
-    time, near, _ = histories(tmp_path / "run.h5", case)
-    pulse = case.wave["pulse"].velocity
-    out, down = buried_displacement(time, 2.75, 0.25, lambda t: 2000.0 * pulse(t), ROCK)
-    np.testing.assert_allclose(near, np.column_stack([out, -down, 0.0 * time]), atol=1e-12 * down.max())
-
-
 HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}
 
 
