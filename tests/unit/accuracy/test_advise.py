@@ -29,9 +29,7 @@ RETURNED = (1.0 - 0.6) / (1.0 + 0.6)
 
 
 def bar() -> DiskCase:
-    case = small(BAR)
-    assert isinstance(case, DiskCase)
-    return case
+    return small(BAR)
 
 
 def exact(case: DiskCase, gauges: Motions, name: str) -> np.ndarray:
@@ -79,7 +77,7 @@ def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
     choice = advised(case, 0.001, ["boundary", "packing"])
 
     assert choice.by["sides"] > 0.01
-    assert choice.error == pytest.approx(true_error(case), rel=0.2)  # type: ignore[arg-type]
+    assert choice.error == pytest.approx(true_error(case), rel=0.2)
 
 
 def test_where_bonds_break_the_error_is_that_before() -> None:
@@ -92,7 +90,6 @@ def test_where_bonds_break_the_error_is_that_before() -> None:
     }
     choice = advised(small(tables), 0.1, ["boundary", "packing"])
     assert "the error is that before bonds break, after about 0.04" in choice.words
-    assert isinstance(choice.case, DiskCase)
     assert choice.case.material.law == "linearpbond"
     assert choice.case.run.until == "duration"
     assert choice.holds
@@ -107,7 +104,7 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
     assert several.best[0.6].choice.changes
     assert several.best[0.6].cost < taken.cost
     of_these = advise(bar(), (0.6, 0.5), of="disks")  # of others the truth would be another one
-    assert of_these.best[0.6].case.packing.radius == 0.25  # type: ignore[attr-defined]
+    assert of_these.best[0.6].case.packing.radius == 0.25
 
 
 def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_given_case(monkeypatch) -> None:

@@ -57,7 +57,7 @@ def test_what_comes_later_is_an_error() -> None:
     late = motion["back"].time >= 0.3
     np.testing.assert_array_equal(np.asarray(lost["velocity"])[:, 0], np.where(late, -4e-4, 0.0))
     assert np.asarray(lost["displacement"])[-1, 0] == pytest.approx(-4e-5, rel=1e-2)
-    assert not np.any(lost["velocity"][:2500])  # type: ignore[index]
+    assert not np.any(lost["velocity"][:2500])
     assert earlier_ends(small(BAR), passing(6e-4), 0.01, []) == []  # now it is above 1e-3 of the peak until the end
     (end,) = earlier_ends(small(BAR), passing(2e-3), 0.3, [])  # a larger bound allows 0.1 · 0.3 of it
     assert end.case.run.silent_level == 0.03
@@ -92,7 +92,7 @@ def test_sides_add_nothing_to_what_is_not_recorded() -> None:
         for name, each in true.items()
     }
     (end,) = earlier_ends(case, own, 0.01, [])
-    both = Budget(true, Causes([Cause("sides", "", sent), end.lost]))  # type: ignore[arg-type]
+    both = Budget(true, Causes([Cause("sides", "", sent), end.lost]))
     lost = true["back"].values["velocity"][true["back"].time >= 0.3]
     share = float(np.linalg.norm(lost) / np.linalg.norm(true["back"].values["velocity"]))
     assert both.total("back", "velocity").value == pytest.approx(share, rel=1e-9)

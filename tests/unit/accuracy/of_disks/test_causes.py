@@ -10,7 +10,6 @@ from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.sliding import settled_of
 from dembound.accuracy.runner import at_step, measure
-from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.formulas.cause import STEP
 from dembound.formulas.disks.formulas import Formulas
@@ -33,9 +32,8 @@ BAR = PUSHED | {
 @pytest.fixture(scope="module")
 def given() -> Companions:
     case = small(BAR)
-    assert isinstance(case, DiskCase)
     planned = plan(case)
-    return Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
+    return Companions(case, planned.scene, planned.time_step, 0.0)
 
 
 def exact(scene: DiskScene, place: float, time: np.ndarray) -> np.ndarray:
@@ -55,7 +53,6 @@ def test_other_places_change_the_motion_as_they_do_in_an_exact_wave(given: Compa
     """
     planned = plan(with_changes(given.case, {"packing.radius": 0.75}))
     scene = planned.scene
-    assert isinstance(scene, DiskScene)
     places = next(cause for cause in ground_causes(given, scene, planned.time_step) if cause.name == "places")
 
     for name, own in given.recorded(scene).items():
@@ -85,7 +82,6 @@ def test_waves_of_a_load_come_back_early_from_disks_that_are_held() -> None:
     coarse, fine = (small(tables, changes={"packing.radius": radius}) for radius in (0.5, 0.5 / 3))
     own, finer = (measure(case, Progress())[0].motions["m"] for case in (coarse, fine))
     own = replace(own, values={q: own.values[q][:, :2] for q in ("velocity", "displacement")})
-    assert isinstance(coarse, DiskCase)
     causes = causes_of_run(coarse, {"m": own}, 1e-4, 1e6, 1e7)
     (found,) = [each for each in causes.found if each.name == "bottom side"]
     assert found.of_disks
@@ -124,7 +120,6 @@ SHEARED = GRAVEL | {
 def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     """The error of the time step is 3.8 times that of the formula, which holds for elastic contacts."""
     case = small(GRAVEL)
-    assert isinstance(case, DiskCase)
     step = plan(case).time_step
     run, fine = (measure(at_step(case, step / n), Progress())[0] for n in (1, 8))
     assert run.laws == ("elastic", "linearpbond")
@@ -138,17 +133,15 @@ def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     true = np.linalg.norm(own - fine.motions["top"].at(recorded["top"].time).velocity[:, 0]) / np.linalg.norm(own)
     # one sample of a random error; were it all of the difference, or none of it, it would be 1.12 times or 0
     assert found.share("top", "velocity", recorded["top"]) == pytest.approx(true, rel=0.3)
-    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)  # type: ignore[arg-type]
+    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)
     assert true > 3.0 * formula.share("top", "velocity", recorded["top"])
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
     """Forces at rest are in proportion to the diameter, so that larger disks find the same error."""
     case = small(SHEARED)
-    assert isinstance(case, DiskCase)
     planned = plan(case)
     scene, step = planned.scene, planned.time_step
-    assert isinstance(scene, DiskScene)
     own, larger = (Companions(case, scene, step, most) for most in (1e9, 0.0))
     assert larger.diameter > 1.5 * own.scene.ground.brick.mean_diameter
     found = [rest_causes(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]

@@ -11,7 +11,6 @@ from small_cases import small
 from dembound.accuracy.of_disks.cost import Counted, planned_cost
 from dembound.accuracy.of_disks.options import Options
 from dembound.accuracy.of_disks.steps import MOST, Along
-from dembound.casefile.disks import DiskCase
 from dembound.running import plan
 
 ROCK = {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5}
@@ -67,7 +66,6 @@ elements at more places than in the piece that the step is found on, this may be
 
 def options_of(tables: dict[str, Any], **changes: Any) -> Options:
     case = small(tables, changes=changes) if changes else small(tables)
-    assert isinstance(case, DiskCase)
     return Options(plan(case), 0.02, ())
 
 
@@ -100,7 +98,6 @@ def test_counted_costs_are_those_of_plans(tables: dict[str, Any], factors: tuple
 
 def test_choices_keep_what_is_to_be_kept() -> None:
     case = small(BAR)
-    assert isinstance(case, DiskCase)
     given = plan(case)
     assert {each.factor for each in Options(given, 0.02, ["packing.radius"]).of(1.0)} == {1.0}
     assert Options(given, 0.02, ["packing.radius"]).factors == [1.0]

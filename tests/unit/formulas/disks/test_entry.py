@@ -28,12 +28,12 @@ def driven(side: str = "bottom", motion: str = "p", **table: Any) -> dict[str, A
     sideways = side in ("left", "right")
     around = dict.fromkeys(("bottom", "top") if sideways else ("left", "right"), PERIODIC)
     size = [40.0, 2.0] if sideways else [2.0, 40.0]
-    packing = ROW["packing"] | {"size": size}  # type: ignore[operator]
+    packing = ROW["packing"] | {"size": size}
     return ROW | {"packing": packing, "boundary": {**around, side: {f"wave_{motion}": "w", **table}}}
 
 
 def late(tables: dict[str, Any], side: str = "bottom", motion: str = "p") -> float:
-    return entries_of(build(small(tables)))[side][motion].late  # type: ignore[arg-type, index]
+    return entries_of(build(small(tables)))[side][motion].late
 
 
 @pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
@@ -76,12 +76,12 @@ def test_a_wave_comes_as_much_later_as_it_enters(kind: str, motion: str) -> None
     After 7 m of the lattice it lags by (2πD/λ)²/24 of that, 3.5 mm, and changes its form; the entry is 0 to 315 mm.
     """
     tables = driven("bottom", motion, type=kind) | {"monitor": [{"name": "inside", "position": [1.25, 7.25]}]}
-    case = small(tables)  # type: ignore[arg-type]
-    scene = build(case)  # type: ignore[arg-type]
-    entry = entries_of(scene)["bottom"][motion]  # type: ignore[index]
+    case = small(tables)
+    scene = build(case)
+    entry = entries_of(scene)["bottom"][motion]
     own = measure(case, Progress())[0].motions["inside"]
     velocity = own.velocity[:, 1 if motion == "p" else 0]
-    wave, y = case.wave["w"], float(own.place[1])  # type: ignore[attr-defined]
+    wave, y = case.wave["w"], float(own.place[1])
     rest = [
         float(np.linalg.norm(velocity - wave.velocity(own.time - (y + at) / entry.speed)) / np.linalg.norm(velocity))
         for at in (entry.late - 0.02, entry.late, entry.late + 0.02)
@@ -94,8 +94,7 @@ def test_through_a_continuum_waves_enter_where_it_ends() -> None:
     """Beyond the row of pattern C, whose disks are centred on the side: half of a row later."""
     packing = {"pattern": "C", "size": [4.0, 8.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
     tables = driven("bottom", type="outside") | {"packing": packing | {"edge_radius": 0.25, "seed": 1}}
-    scene = build(small(tables))  # type: ignore[arg-type]
-    assert scene.outside is not None
+    scene = build(small(tables))
     found = entries_of(scene)["bottom"]["p"]
     assert found.late == pytest.approx(-scene.outside.box[1])
     assert found.late == pytest.approx(0.25, abs=0.02)  # D/2 of a row

@@ -172,7 +172,6 @@ def test_single_disks_at_a_random_surface_err_as_waves_at_an_angle_strain_it() -
     }
     case = small(tables)
     scene = build(case)
-    assert scene.ground_waves is not None
     found, expected = [], []
     motions = {
         name: replace(own, values={quantity: values[:, :2] for quantity, values in own.values.items()})

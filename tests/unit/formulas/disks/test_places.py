@@ -16,7 +16,7 @@ from dembound.running import Progress, plan
 
 def lattice(**changes: object) -> DiskScene:
     """Disks of 0.5 m in 10 m × 2.5 m, the first at 0.25 m."""
-    return build(small(PUSHED, changes=changes))  # type: ignore[arg-type]
+    return build(small(PUSHED, changes=changes))
 
 
 def test_quadratic_motion_is_found_at_any_place() -> None:
@@ -57,7 +57,7 @@ def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
     free = {"boundary": {}}
 
     def middle(**changes: object) -> np.ndarray | None:
-        return middle_of_loads(build(small(PUSHED, changes=changes)))  # type: ignore[arg-type]
+        return middle_of_loads(build(small(PUSHED, changes=changes)))
 
     assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
     assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
@@ -68,9 +68,9 @@ def test_loads_that_a_body_rests_under_start_no_waves() -> None:
     foot = {"name": "foot", "force": [0.0, -1e6], "region": [2.0, 0.5, 3.0, 1.5]}
     hit = {"name": "hit", "force": [1e5, 0.0], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"}
     at_rest = {"load": [foot, hit], "boundary": {}, "static": {"boundary": {"bottom": {"type": "fixed"}}}}
-    assert middle_of_loads(build(small(PUSHED, changes=at_rest))) == pytest.approx(np.array([6.5, 1.0]))  # type: ignore[arg-type]
+    assert middle_of_loads(build(small(PUSHED, changes=at_rest))) == pytest.approx(np.array([6.5, 1.0]))
     sudden = {"load": [foot, hit], "boundary": {}}
-    found = middle_of_loads(build(small(PUSHED, changes=sudden)))  # type: ignore[arg-type]
+    found = middle_of_loads(build(small(PUSHED, changes=sudden)))
     assert found == pytest.approx(np.array([(10 * 2.5 + 6.5) / 11, 1.0]))
 
 
@@ -97,7 +97,7 @@ def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it()
         for y in (19.5, 20.5)
     )
     planned = plan(high)
-    larger = build(with_changes(high, {"packing.radius": 1.5}))  # type: ignore[arg-type]
+    larger = build(with_changes(high, {"packing.radius": 1.5}))
     companions = Companions(high, planned.scene, planned.time_step, 1e9)
     found, time = errors_of_places(companions, larger)["there"]["velocity"], companions.recorded(larger)["there"].time
     runs = (measure(extended(case).case, Progress())[0] for case in (low, high))
