@@ -4,10 +4,8 @@ import pytest
 
 from dembound.accuracy.chart.study import defaults, from_table
 from dembound.accuracy.choice import changed, choices_of
-from dembound.accuracy.of_disks import chart_choices
 from dembound.errors import CaseError
-from dembound.kinds import load, with_changes
-from dembound.shipped import folder, names
+from dembound.kinds import with_changes
 
 
 def test_the_table_gives_choices(bar) -> None:
@@ -28,21 +26,6 @@ def test_the_table_gives_choices(bar) -> None:
     twice = [{"name": "free", "set": {}}, {"name": "free", "set": {"run.safety": 0.5}}]
     with pytest.raises(CaseError, match=r"chart.choice: two choices have the name free"):
         from_table(bar({"chart": {"choice": twice}}))
-
-
-IN_CI = ("charts/blast", "spall")
-
-
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in IN_CI else pytest.mark.slow) for n in names()])
-def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
-    monkeypatch.setattr(chart_choices, "_matched_factors", lambda case: iter(()))  # they need the packing
-    case = load(folder() / f"{name}.toml")
-    choices, _ = choices_of(case, defaults(case))
-    assert len(choices) >= 4
-    for choice in choices:  # rows of frames are coarsened with the disks
-        if "packing.radius" in choice.changes and hasattr(case.packing, "edge_radius"):
-            ratio = choice.changes["packing.radius"] / case.packing.radius
-            assert choice.changes["packing.edge_radius"] == pytest.approx(ratio * case.packing.edge_radius)
 
 
 def test_of_disks_one_thing_changes_at_a_time(bar) -> None:

@@ -73,13 +73,6 @@ def test_what_no_chart_has_written_is_refused_in_a_line(record, change) -> None:
     assert len(str(refused.value).splitlines()) == 1
 
 
-def test_a_run_that_is_a_link_to_itself_is_refused(record) -> None:
-    with h5py.File(record.path, "a") as file:
-        file["runs/loop"] = h5py.SoftLink("/runs/loop")
-    with pytest.raises(RecordError, match="link"):
-        record.get("loop")
-
-
 def test_a_run_without_a_monitor_or_a_quantity_that_is_compared_is_refused(record) -> None:
     assert record.get(KEY, ["top"], "stress").work > 0
     with h5py.File(record.path, "a") as file:

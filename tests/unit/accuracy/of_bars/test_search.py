@@ -14,8 +14,6 @@ from dembound.accuracy.choice import Choice
 from dembound.accuracy.of_bars.options import BarOption
 from dembound.accuracy.of_bars.search import MARGIN, Floors, first_echo, is_regular
 from dembound.bar.scene import BarScene, build_bar
-from dembound.casefile import Case
-from dembound.errors import CaseError
 from dembound.kinds import with_changes
 
 
@@ -145,21 +143,6 @@ def test_of_a_bar_that_may_break_finite_differences_are_named_where_its_method_d
     assert 0.01 * float(named[2]) == pytest.approx(
         true_error(choice._replace(choice=Choice.of(case, finite, ""))), rel=0.1
     )
-
-
-@pytest.mark.parametrize(
-    ("case", "line"),
-    [
-        (
-            with_changes(scene("ranges"), {"bar.range.soft.interface": "contact"}),
-            "nothing is known of bars with contacts",
-        ),
-        (with_changes(scene("viscous end"), {"run.duration": 1e-5, "monitor.near.position": 0.9}), "nothing moves"),
-    ],
-)
-def test_bars_of_which_nothing_is_known_are_refused(case: Case, line: str) -> None:
-    with pytest.raises(CaseError, match=line):
-        advised(case, 0.01)
 
 
 def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
