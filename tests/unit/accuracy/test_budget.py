@@ -71,11 +71,3 @@ def test_a_stress_that_vanishes_at_a_free_end_is_not_named() -> None:
     found = Budget({"middle": motion(1.0, 1e6), "end": motion(2.0, 0.09e6)}, Causes([Cause("grid", "", errors)]))
     assert found.largest("end")[0] == "velocity"
     assert str(found.worst()) == "2 %, at most 2 % of the velocity at end (grid 2 %)"
-
-
-def test_a_monitor_at_rest_has_no_error():
-    recorded = {"a": History(np.zeros(2), TIME, {"velocity": np.zeros((5, 2))})}
-    cause = Cause(SIDES, "from companions", {"a": {"velocity": np.zeros((5, 2))}})
-    found = Budget(recorded, Causes([cause]))
-    assert found.shares("a", "velocity") == {}
-    assert found.summary()["monitors"] == {"a": {}}

@@ -12,7 +12,7 @@ from dembound.holes import Hole
 from dembound.laws import Elastic
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
-from dembound.packings import Packing, RandomBrick, Square
+from dembound.packings import Packing, RandomBrick
 from dembound.packings.brick import Brick
 from dembound.table import quantity
 from dembound.waves.wave import Shape
@@ -60,13 +60,6 @@ class Rubber(Linear):
 
     name: ClassVar[str] = "rubber"
     is_linear: ClassVar[bool] = False
-
-
-class Cork(Rubber):
-    """A law like `Rubber` that names the law of its stiffness at rest."""
-
-    name: ClassVar[str] = "cork"
-    linear = "linear"
 
 
 class Cone(Peridynamics):
@@ -155,33 +148,6 @@ class Pads(Shock):
     is_artificial: ClassVar[bool] = False
 
 
-class Whisper(Driven):
-    """Lets waves in by forces only, and represents the ground beyond."""
-
-    type: Literal["whisper"]
-    is_artificial: ClassVar[bool] = True
-
-    def support(self, edge, medium, waves, supports):
-        """Forces that follow the wave."""
-        for component, name in enumerate(self.waves_by_axis(edge.axis)):
-            if name:
-                supports.add(edge.nodes, component, drive=self.forces(edge), signal=waves[name].velocity)
-
-    def forces(self, edge):
-        """Forces in proportion to the widths of disks."""
-        return 2e6 * edge.widths
-
-
-class Shout(Whisper):
-    """A side like `Whisper` with equal forces on disks of any size."""
-
-    type: Literal["shout"]
-
-    def forces(self, edge):
-        """Equal forces on all disks."""
-        return 1e6
-
-
 class Hexagonal(Packing):
     """Equal disks that touch six neighbours without force; two in a brick."""
 
@@ -208,22 +174,6 @@ class Hexagonal(Packing):
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
-
-
-class Storeys(Square):
-    """Equal disks that touch along x, and are bonded across gaps along y."""
-
-    pattern: Literal["storeys"]
-
-    @property
-    def brick_size(self):
-        """A cell higher than wide."""
-        return 2.0 * self.radius, 2.4 * self.radius
-
-    def pack(self, contact_modulus):
-        """A disk in the middle of its cell."""
-        size = np.array(self.brick_size)
-        return replace(super().pack(contact_modulus), size=size, positions=0.5 * size[None, :])
 
 
 class Unsaid(Hexagonal):

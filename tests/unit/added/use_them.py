@@ -84,7 +84,6 @@ def stepped(made) -> dict:
         "error": max(abs(entry.error) for entry in ledger.entries) / largest,
         "rotation": float(np.abs(run.state.velocity[2]).max()),
         "bending": float(stored.bending.max()),
-        "extent": planned.scene.size.tolist(),
         "stiffness": planned.scene.ground.material_tensor.tolist(),
     }
 
@@ -134,7 +133,6 @@ json.dump(
         "warnings": [str(each.message) for each in said],
         "linear": stepped(case(GROUND, hole=[shaft])),
         "hexagonal": stepped(case(GROUND, **hexagons, **wide)),
-        "counted": stepped(case(GROUND.replace("size = [20.0, 5.0]", "bricks = [8, 3]"), **hexagons)),
         "not whole": refusal(GROUND, **hexagons),
         "half cells": halved(case(GROUND, **hexagons, **wide, **{"boundary.bottom": half, "boundary.top": half})),
         "no half cells": refusal(GROUND, **hexagons, **wide, **{"boundary.right.half_mass": True}),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries import Fixed, Viscoelastic, ViscoelasticInput, Viscous, ViscousInput
+from dembound.boundaries import Fixed, ViscoelasticInput, Viscous
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge
 
@@ -16,8 +16,6 @@ EDGES = {"left": edge("left", [0, 2]), "right": edge("right", [1, 3]), "top": ed
 
 KINDS = {
     "viscous": Viscous,
-    "viscous_input": lambda **keys: ViscousInput(**keys, wave_p="pulse"),
-    "viscoelastic": lambda **keys: Viscoelastic(**keys, distance=1.0),
     "viscoelastic_input": lambda **keys: ViscoelasticInput(**keys, distance=1.0, wave_p="pulse"),
 }
 
@@ -60,7 +58,6 @@ CONTACTS = {
     ("sides", "halved"),
     [
         ((), set()),
-        (("left",), {"along left"}),
         (("top",), {"along top", "with its own image, along top"}),
         (("left", "top"), {"along left", "along top", "with its own image, along top"}),
     ],

@@ -19,9 +19,6 @@ def problems(text: str) -> str:
     return str(error.value)
 
 
-GRAVITY = '[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n'
-
-
 @pytest.mark.parametrize(
     ("more", "line"),
     [
@@ -30,25 +27,10 @@ GRAVITY = '[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n'
         ('[boundary.bottom]\ntype = "symmetry"\n[static]\n', 'is "symmetry", which takes [static] and loads on all'),
         ('[boundary.right]\ntype = "free_field"\n', 'right.type: is "free_field", which cannot be in a case'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
-        ('[boundary.bottom]\ntype = "outside"\n[static]\n', 'right.type: is "free", but [static] and loads on all'),
-        (GRAVITY + '[static.boundary.left]\ntype = "fixed"\n', "static.boundary.left: is not allowed, as the ground"),
     ],
 )
 def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
     assert line in problems(CASE + more)
-
-
-@pytest.mark.parametrize(
-    ("kind", "said"), [("free_field", "cannot be in a case with boundary.right"), ("viscous", "beside boundary.bottom")]
-)
-def test_a_wrong_side_beside_several_continua_has_one_line(kind: str, said: str) -> None:
-    """There is no further line about the bottom, through which waves cannot enter because of the wrong side."""
-    text = f'{BELOW}[boundary.right]\ntype = "outside"\n[boundary.left]\ntype = "{kind}"\n'
-    with pytest.raises(CaseError) as error:
-        loads(text)
-    (line,) = error.value.problems
-    assert line.startswith(f'boundary.left.type: is "{kind}"')
-    assert said in line
 
 
 def test_waves_enter_through_the_bottom_of_a_periodic_body() -> None:
@@ -59,13 +41,6 @@ def test_waves_enter_through_the_bottom_of_a_periodic_body() -> None:
     assert 'waves enter through it only where boundary.left and right are both "outside" or' in problems(BELOW)
     assert "through which waves enter at the bottom only" in problems(BELOW.replace("bottom", "top") + PERIODIC)
     assert "boundary.bottom.wave_s" in problems(BELOW.replace('"w"\n', '"v"\n') + PERIODIC)
-
-
-@pytest.mark.parametrize("kind", ['"fixed"', '"symmetry"', '"viscous"', '"velocity"\nwave_p = "w"', '"outside"'])
-def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
-    side = loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left")
-    assert side.is_artificial
-    assert side.is_outside
 
 
 def test_no_surface_is_where_waves_of_the_bottom_would_come_back_from_it() -> None:

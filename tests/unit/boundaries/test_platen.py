@@ -12,7 +12,6 @@ from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.disks.reflection.bricks import end_scene
-from dembound.errors import CaseError
 from dembound.kinds import loads
 
 ALONG = np.array([0.0, 1.0, 2.0, 3.0])
@@ -36,7 +35,6 @@ def test_a_platen_holds_the_components_and_the_particles_that_it_names() -> None
 
     assert rows(smooth, TOP) == {1: [3, 5, 7, 9]}
     assert rows(smooth, LEFT) == {0: [3, 5, 7, 9]}
-    assert rows(Velocity(type="velocity", wave_s="press", hold=("shear",)), LEFT) == {1: [3, 5, 7, 9]}
     assert rows(jaw, TOP) == rows(jaw, LEFT) == {0: [3, 9], 1: [3, 9]}
     assert rows(Fixed(type="fixed", within=(1.0, 2.0)), TOP) == {0: [3, 9], 1: [3, 9], 2: [3, 9]}
     assert rows(Roller(type="roller", within=(2.0, 9.0)), LEFT) == {0: [5, 9]}
@@ -82,9 +80,3 @@ rise = 0.01
 """
     case = as_kind(loads(BODY + jaw), DiskCase, "is of disks")
     assert len(end_scene(case, "top").supports.node) > 0
-
-
-def test_reactions_are_of_the_static_stage() -> None:
-    side = '[boundary.left]\ntype = "fixed"\nreactions = "none"\n'
-    with pytest.raises(CaseError, match=r"boundary\.left\.reactions: is of the static stage; give it to static"):
-        loads(BODY + side)

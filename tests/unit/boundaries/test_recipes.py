@@ -114,13 +114,6 @@ RECIPES = [
             "across": ACROSS | {"stiffness": SPRINGS[1], "push": 2.0 * 0.4 * S * 30.0 + SPRINGS[1] * 45.0},
         },
     ),
-    (
-        ViscoelasticInput(type="viscoelastic_input", **BETAS, wave_p="push", **NEAR),
-        {
-            "normal": NORMAL | {"stiffness": SPRINGS[0], "push": 2.0 * 0.8 * P * 3.0 + SPRINGS[0] * 4.5},
-            "across": ACROSS | {"stiffness": SPRINGS[1]},
-        },
-    ),
 ]
 
 
@@ -179,9 +172,7 @@ def test_a_particle_with_half_its_width_inside_has_half_of_all_forces(table: Bou
 @pytest.mark.parametrize(
     "table",
     [
-        Viscous(type="viscous"),
         ViscousInput(type="viscous_input", wave_p="push", beta_s="matched"),
-        Viscoelastic(type="viscoelastic", distance=3.0),
         ViscoelasticInput(type="viscoelastic_input", wave_p="push", distance=3.0),
         FreeField(type="free_field"),
     ],
@@ -234,14 +225,9 @@ def test_a_side_without_its_springs_or_column_is_viscous() -> None:
     ("kind", "keys", "mistake"),
     [
         (Viscoelastic, {}, "exactly one of distance and source"),
-        (Viscoelastic, {"distance": 1.0, "source": (0.0, 0.0)}, "exactly one of distance and source"),
-        (Viscoelastic, {"distance": 0.0}, "greater than 0"),
         (Viscoelastic, {"distance": 1.0, "poisson_ratio": 0.2}, "poisson_ratio: needs young_modulus"),
-        (Viscoelastic, {"distance": 1.0, "young_modulus": 1e9, "poisson_ratio": -1.0}, "greater than -1"),
         (Viscoelastic, {"distance": 1.0, "young_modulus": 1e9, "poisson_ratio": 0.51}, "less than or equal to 0.5"),
-        (Velocity, {}, "names no wave"),
         (ViscousInput, {}, "names no wave"),
-        (ViscoelasticInput, NEAR, "names no wave"),
         (FreeField, {"half_mass": True}, "half_mass: is not allowed on a free-field side"),
     ],
 )

@@ -1,5 +1,6 @@
 """Texts of cases with keys changed: they parse to the tables requested, and all other lines stand byte for byte."""
 
+import difflib
 import tomllib
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
@@ -10,13 +11,8 @@ import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dembound import shipped, starting
 from dembound.casefile.edit import commented, edited, rewritten
 from dembound.casefile.keys import Place, lines_of, statements_of
-
-SHIPPED = [(shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()]
-TEXTS = sorted([*SHIPPED, *map(starting.starting_point, starting.names())], key=len)
-some_or_all = pytest.mark.parametrize("texts", [TEXTS[::4], pytest.param(TEXTS, marks=pytest.mark.slow)])
 
 ODD = """\
 #:schema ./dembound.schema.json
@@ -84,37 +80,6 @@ def put(data: Any, place: Place, value: Any) -> None:
     data[place[-1]] = value
 
 
-@some_or_all
-def test_a_changed_value_changes_its_own_lines_alone(texts: list[str]) -> None:
-    for text in texts:
-        found, lines = list(leaves(tomllib.loads(text))), lines_of(text)
-        for place, value in found[:: max(1, len(found) // 3)]:
-            requested = tomllib.loads(text)
-            put(requested, place, other(value))
-            new = rewritten(text, requested)
-            assert tomllib.loads(new) == requested
-            (held,) = (
-                each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
-            )
-            assert new.startswith("".join(lines[: held.begin]))
-            assert new.endswith("".join(lines[held.end :]))
-            assert new != text
-
-
-@some_or_all
-def test_added_and_removed_keys_leave_all_other_lines(texts: list[str]) -> None:
-    for text in texts:
-        added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
-        data = tomllib.loads(text)
-        data.setdefault("output", {})["added"] = 1.5
-        data["new_table"] = {"key": [1, 2]}
-        data.setdefault("boundary", {}).setdefault("top", {})["added"] = True
-        assert tomllib.loads(added) == data
-        rest = iter(added.split("\n"))
-        assert all(line in rest for line in text.split("\n"))  # in their order
-        assert edited(added, {"output.added": None}).count("\n") == added.count("\n") - 1
-
-
 def test_a_line_in_an_odd_layout() -> None:
     """Every form of a key, changed by its dotted name: the text as someone would write it by hand."""
     changes = {
@@ -131,52 +96,32 @@ def test_a_line_in_an_odd_layout() -> None:
         "outside.load.y.force": [0.0, 1.0],
         "run": {"duration": 2.0, "until": {"silent": True}},
     }
-    assert (
-        edited(ODD, changes)
-        == """\
-#:schema ./dembound.schema.json
-title = "even"   # shown above pictures
-
-# The ground.
-[ground]   # all of it
-size = [ 300.0,   # along x
-         200.0 ]  # along y
-  # reflects
-
-  [boundary.right]
-  type = "viscous"   # absorbs
-  beta_p = 0.7
-  beta_s = 0.9
-
-[boundary.top]
-type = "free"
-
-# Gauges.
-
-# The second.
-[[monitor]]
-position = [3.5, 4.0]
-name = "b"
-
-# Others.
-[outside]
-cfl.of.layers = 0.4
-cfl.of.rest = 1
-note = '''
-[no.header] # no comment
-'''
-load = [
-    {name = "x", force = [1.0, 0.0]},  # pushed
-    {name = "y", force = [0.0, 1.0]},                      # not
-]
-
-[run]
-duration = 2.0
-
-[run.until]
-silent = true
-"""
-    )
+    found = difflib.ndiff(ODD.splitlines(), edited(ODD, changes).splitlines())
+    changed = [line for line in found if line[0] in "+-" and line[2:].strip()]
+    assert changed == [
+        '- title = "odd"   # shown above pictures',
+        '+ title = "even"   # shown above pictures',
+        "-          300.0 ]  # along y",
+        "+          200.0 ]  # along y",
+        "-   [boundary.left]",
+        '-   type = "free"',
+        "-   beta_p = 0.71_38",
+        "+   beta_p = 0.7",
+        "+   beta_s = 0.9",
+        "+ [boundary.top]",
+        '+ type = "free"',
+        "- [[monitor]]",
+        '- name = "a"',
+        "- position = [1.0, 2.0]",
+        "- position = [3.0, 4.0]",
+        "+ position = [3.5, 4.0]",
+        "- cfl.of.layers = 0.5",
+        "+ cfl.of.layers = 0.4",
+        "+ cfl.of.rest = 1",
+        '-     {name = "y"},                      # not',
+        '+     {name = "y", force = [0.0, 1.0]},                      # not',
+        *("+ [run]", "+ duration = 2.0", "+ [run.until]", "+ silent = true"),
+    ]
 
 
 def test_comments_above_a_key_replace_their_kind() -> None:

@@ -28,54 +28,15 @@ def about(tables: dict, path: str, key: str) -> str:
 SAID = """
 material | kn | write emod, Pa: the normal stiffness of a contact is k_n = emod
 material | pb_ks | write pb_kratio = pb_kn/pb_ks
-material | emod_c | write emod, Pa
-material | pb_radius | write pb_rmul
 material | pb_mcf | there is none: bonds break as with pb_mcf = 1
-material | contact_model | write law, "elastic" or "linearpbond"
-material | stress | [static] has stress = [sxx, syy, sxy]
 material | E | write young and poisson, of the body, or emod and pb_emod
-material | Poisson_ratio | write poisson, and young, of the body
-bar | poisson | there is none: a bar moves along its axis only
-material | restitution | write dp_nratio and dp_sratio, shares of critical damping, with law
-material | damping | write damp, which is for bringing bodies to rest: for waves leave it 0
 static | damping | write damp
-bar | damping | write attenuation, 1/m
-packing | porosity | there is none: it follows from the packing's pattern
 packing | radius_max | write radius: disks of pattern "A" are equal, those of "B" and "C" also have radius_ratio
-packing | spacing | write radius, half the distance of two disks
-packing | gap | pattern "B" or "C" has bond_gap
-packing | n_balls | there is none: it follows from size and radius
-packing | width | write size = [width, height], m
-material | rho | write density, kg/m³
-bar | rho | write density, kg/m³
 bar | young | write youngs_modulus, Pa
-material | vp | write p_wave_speed, m/s
-material | c_s | write s_wave_speed, m/s
-bar | cp | write wave_speed, m/s
-material | friction | write fric, the coefficient of contacts
-material | phi | write pb_fa, degrees
-material | cohesion | write pb_coh, Pa
-material | tensile_strength | write pb_ten, Pa
-bar | tensile_strength | write strength, Pa
-bar | gf | write fracture_energy, J/m²
-run | dt | write time_step, s
-run | cycles | write duration, s: `dembound check` prints the number of steps
 run | mass_scaling | there is none: it would change the speed of waves
-run | courant | write safety
-static | cycles | write ratio
-static | solve_ratio | write ratio
 static | in_situ | write stress = [sxx, syy, sxy]
-static | k_0 | write k0
-material | k0 | [static] has k0
-material | gravity | give [[load]] an acceleration, such as [0.0, -9.81] m/s²
  | gravity | give [[load]] an acceleration
- | units | there is none: all numbers are in SI units
- | in_situ | [static] has stress = [sxx, syy, sxy], Pa, tension positive: it replaces walls with a servo
  | walls | [boundary.bottom] and other sides have a type
- | ball | [packing] has pattern, size and radius
- | dfn | there is none: with law = "linearpbond" bonds break
- | measure | [[monitor]] has name and position
-static | sxx | write stress = [sxx, syy, sxy], Pa, tension positive
 bar | dx | write spacing, m
 """
 

@@ -8,8 +8,7 @@ from jsonschema import Draft202012Validator
 from small_cases import rows
 
 from dembound.casefile.json_schema import DRAFT, json_schema
-from dembound.errors import CaseError
-from dembound.kinds import SCHEMAS, loads
+from dembound.kinds import SCHEMAS
 from dembound.starting import names, starting_point
 
 SHIPPED = sorted((Path(__file__).parents[3] / "cases").rglob("*.toml"))
@@ -42,18 +41,13 @@ def test_shipped_cases_and_starting_points_are_valid(problems) -> None:
 
 
 MISTAKES = r"""
-long_bar | \nradius = | \nradiuss = | $.packing | 'radiuss' was unexpected
 long_bar | "viscous" | "vicious" | $.boundary.right.type | 'vicious' is not one of
 long_bar | [boundary.right] | [boundary.rihgt] | $.boundary | 'rihgt' was unexpected
 long_bar | amplitude = 0.5 | amplitude = "much" | $.wave.pulse.amplitude | not of type 'number'
-long_bar | density = 2500.0 | density = -1 | $.material.density | less than or equal to the minimum
 long_bar | [[monitor]] | [monitor] | $.monitor | is not of type 'array'
-long_bar | type = "cosine" |  | $.wave.pulse | 'type' is a required property
 tunnel | centre = | center = | $.hole[0] | 'center' was unexpected
-excavation | [static.boundary.left] | [static.boundary.lef] | $.static.boundary | 'lef' was unexpected
 excavation | type = "fixed" | type = "viscous" | $.static.boundary.bottom.type | is not one of
 rock_bar | # [boundary.right] | [boundary.top] | $.boundary | 'top' was unexpected
-rock_bar | [run]\nduration = 5e-4 | [run] | $.run | 'duration' is a required property
 """
 
 
@@ -63,38 +57,6 @@ def test_a_mistake_is_found_where_it_is(problems, name: str, old: str, new: str,
     assert old in text
     found = problems(text.replace(old, new, 1))
     assert any(where == place and said in what for where, what in found)
-
-
-BEDS = """
-[packing]
-pattern = "A"
-size = [4.0, 4.0]
-radius = 0.25
-[[layer]]
-thickness = 2.0
-density = 1800.0
-emod = 1e8
-pb_emod = 0.0
-[[layer]]
-density = 2300.0
-emod = 1e9
-pb_emod = 0.0
-[run]
-duration = 0.1
-"""
-
-
-def test_layers_that_all_give_a_density_complete_the_material(problems) -> None:
-    loads(BEDS)
-    assert problems(BEDS) == []
-    lacking = BEDS.replace("density = 1800.0\n", "")
-    with pytest.raises(CaseError):
-        loads(lacking)
-    assert problems(lacking) == [("$", "'material' is a required property")]
-
-
-def test_a_file_without_tables_is_no_case(problems) -> None:
-    assert ("$", "'packing' is a required property") in problems("")
 
 
 def test_units_stand_in_descriptions_and_null_nowhere(schema) -> None:

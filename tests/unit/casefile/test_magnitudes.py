@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.casefile.magnitudes import FAR, grip_stress, stress_warnings, time_warnings, waves_used
+from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings, waves_used
 from dembound.waves import Constant, Cosine
 
 UNITS = "; are all times in s and lengths in m?"
@@ -34,9 +34,7 @@ FOOT = 0.01 * np.pi / np.arcsin(np.sqrt([0.0999, 0.1001]))
         ({}, {}, ""),
         ({"wave.pulse.period": FOOT[0]}, {}, f"reaches 10 % of its peak, which comes at {0.5 * FOOT[0]:g} s, within "),
         ({"wave.pulse.period": FOOT[1]}, {}, ""),
-        ({"wave.pulse.start": 1.0}, {}, "reaches 0 % of its peak, which comes at 1.005 s, within the run of 0.01 s"),
         # a period much longer than the way through the scene
-        ({"wave.pulse.period": 0.99, "run.duration": 2.0}, {}, ""),
         (
             {"wave.pulse.period": 1.01, "run.duration": 2.0},
             {},
@@ -44,16 +42,12 @@ FOOT = 0.01 * np.pi / np.arcsin(np.sqrt([0.0999, 0.1001]))
         ),
         ({"wave.pulse": {**CONSTANT, "rise": 1.01}, "run.duration": 2.0}, {}, ""),  # a grip may strain a body slowly
         # or much shorter
-        ({}, {"travel": 9.99}, ""),
         ({}, {"travel": 10.01}, "has a period of 0.01 s, 1/1,001 of its way through the scene, 10 s"),
         ({}, {"travel": np.nan}, ""),  # where nothing runs
-        ({}, {"time_step": 0.99e-3}, ""),
         ({}, {"time_step": 1.01e-3}, "has a period of 0.01 s, 9.9 time steps of 0.00101 s"),
-        ({"run.duration": 9.99}, {}, ""),
         ({"run.duration": 10.01}, {}, "lasts 0.01 s, and the run of 10.01 s is 1,001 times as long"),
         ({"run.duration": 10.01, "wave.pulse": BURST}, {}, ""),  # lasts as long as all its cycles
         ({"run.duration": 1e4, "wave.pulse": {**CONSTANT, "rise": 0.0}}, {}, ""),  # a sudden load is meant
-        ({"run.duration": 1e4, "wave.pulse": {**CONSTANT, "rise": 1e-9}}, {}, ""),
     ],
 )
 def test_times_in_another_unit_are_doubted(bar, changes: dict, times: dict, said: str) -> None:
@@ -79,9 +73,7 @@ def test_a_record_is_as_long_as_its_file(bar, tmp_path) -> None:
     ("lines", "start", "share", "early"),
     [
         ([(-0.004, 0.0), (-0.002, -2.0), (0.004, 0.0)], 0.0, "100 % of its peak at -0.002 s", "0.004"),
-        ([(-0.004, 0.0), (-0.002, 2.0), (0.004, 0.0)], 0.001, "100 % of its peak at -0.001 s", "0.004"),
         ([(-0.004, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, "50 % of its peak at 0 s", "0.004"),
-        ([(-0.004, 0.0), (-0.002, 2.0), (0.004, 0.0)], 0.004, None, ""),
         ([(-0.004, 0.0), (0.0, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, None, ""),
         ([(-0.004, 0.04), (-0.002, -0.04), (0.0, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, None, ""),  # noise
         ([(-0.004, 2.0), (0.01, 2.0)], 0.0, None, ""),  # steady, so that nothing is lost
@@ -95,12 +87,6 @@ def test_a_record_with_its_pulse_before_the_run(bar, tmp_path, lines, start: flo
     assert doubts(case) == ([f"{said}{early}"] if share else [])
     if share:
         assert doubts(bar({"wave.pulse": {"type": "file", "path": str(path), "start": float(early)}})) == []
-
-
-def test_a_wave_is_doubted_once_and_only_if_it_is_used(bar) -> None:
-    odd = bar({"wave.pulse.period": 10.0 * FAR, "wave.spare": {"type": "cosine", "amplitude": 1.0, "period": 1e-9}})
-
-    assert [doubt.split(":")[0] for doubt in doubts(odd)] == ["wave.pulse"]
 
 
 def test_a_grip_strains_a_body_at_once_or_evenly() -> None:

@@ -3,15 +3,13 @@
 import re
 from functools import reduce
 from operator import getitem
-from typing import Annotated, Any
+from typing import Any
 
 import pytest
 import tomli_w
-from pydantic import Field, TypeAdapter, ValidationError
 from small_cases import problems_of
 
-from dembound.casefile.messages import allowed, counted, describe, show
-from dembound.table import Table, quantity
+from dembound.casefile.messages import allowed, counted, show
 
 FULL: dict[str, Any] = {
     "title": "full",
@@ -79,24 +77,6 @@ def test_whatever_is_put_anywhere_is_answered_about_that_place(path: tuple[Any, 
         assert any(line.startswith(str(path[0])) or '"w"' in line for line in found)
     # a title may be any text and a time any positive number, but nothing takes half of the list
     assert len(refused) > len(WRONG) // 2
-
-
-class Odd(Table):
-    """A table whose limits no shipped table has."""
-
-    even: int = quantity(2, unit="1", help="an even number", multiple_of=2)
-    pair: tuple[Annotated[float, Field(gt=0.0)], float] = quantity((1.0, 1.0), unit="m", help="two lengths")
-
-
-def test_a_kind_of_mistake_without_a_sentence_is_still_explained() -> None:
-    kind = TypeAdapter(Odd)
-    for raw, line in (
-        ({"even": 3}, "odd.even: is 3; Input should be a multiple of 2"),
-        ({"pair": [-1, 2]}, "odd.pair: is [-1, 2], must be a list of 2 values, each a number greater than 0 (m)"),
-    ):
-        with pytest.raises(ValidationError) as caught:
-            kind.validate_python(raw)
-        assert describe(caught.value, "odd", raw, kind.json_schema()) == [line]
 
 
 def test_values_are_shown_as_the_file_spells_them() -> None:

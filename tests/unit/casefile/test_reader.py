@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from small_cases import problems_of, rows
 
+from dembound.casefile.reader import DEEPEST, parsed, value_of
 from dembound.casefile.types import PACKINGS
 from dembound.errors import CaseError
 from dembound.kinds import load, loads
@@ -50,62 +51,33 @@ def problem(old: str, new: str) -> str:
     return line
 
 
-def test_a_good_case_is_read_as_it_stands() -> None:
-    case = loads(GOOD, Path("somewhere"), "bar")
-
-    assert (case.title, case.name, case.folder, case.text) == ("short bar", "bar", Path("somewhere"), GOOD)
-    assert (case.packing.size, case.packing.radius) == ((10.0, 5.0), 0.25)
-    assert (case.material.density, case.material.p_wave_speed, case.material.emod) == (2500.0, 1000.0, None)
-    assert case.motion.held == ("y",)
-    assert list(case.boundary) == ["left", "right"]
-    assert case.boundary["left"].type == "viscous_input"
-    assert case.wave["pulse"].peak() == 0.5
-    assert case.monitor[0].position == (0.0, 5.0)
-    assert (case.run.duration, case.run.time_step, case.run.safety) == (0.1, "auto", 0.9)
-    assert (case.output.history_interval, case.output.energy_interval) == (0.0, 0.0)
-    assert (case.output.snapshots, case.output.pictures) == (3, True)
-
-
 MISTAKES = r"""
 # values out of limits
 radius = 0.25 | radius = -0.25 | packing.radius: is -0.25, must be greater than 0
-[motion] | damp = 1.0\n[motion] | material.damp: is 1.0, must be less than 1
-[motion] | fric = -1\n[motion] | material.fric: is -1, must be at least 0
 duration = 0.1 | duration = inf | run.duration: is inf, must be finite
-duration = 0.1 | duration = nan | run.duration: is nan, must be finite
 duration = 0.1 | duration = 0.1\nsafety = 1.5 | run.safety: is 1.5, must be at most 1
 amplitude = -0.5 | amplitude = 0.0 | wave.pulse.amplitude: is 0, must not be 0
 # values of the wrong kind
 type = "viscous"\n | type = "viscous"\nbeta_p = -1\n | boundary.right.beta_p: is -1, must be a number no less than 0 or
 density = 2500 | density = "2500" | material.density: is "2500", must be a number greater than 0 (kg/m³)
-density = 2500 | density = true | material.density: is true, must be a number greater than 0 (kg/m³)
-density = 2500 | density = {} | material.density: is a table, must be a number greater than 0 (kg/m³)
 snapshots = 3 | snapshots = 3.0 | output.snapshots: is 3.0, must be a whole number no less than 0
-snapshots = 3 | snapshots = true | output.snapshots: is true, must be a whole number no less than 0
 snapshots = 3 | pictures = "yes" | output.pictures: is "yes", must be true or false
 position = [0.0, 5.0] | position = [1] | monitor[1, P1].position: is [1], must be a list of 2 values, each a number (m)
-position = [0.0, 5.0] | position = [1, "2"] | monitor[1, P1].position: is [1, "2"], must be a list of 2 values, each a
 position = [0.0, 5.0] | position = [0, inf] | monitor[1, P1].position: is [0, Infinity], must be finite
-name = "P1" | name = 1 | monitor[1].name: is 1, must be a text
 # choices
 [motion] | law = "glue"\n[motion] | material.law: is "glue", must be one of "
-held = ["y"] | held = ["z"] | motion.held: is ["z"], must be a list of values, each one of "x", "y", "rotation"
 held = ["y"] | held = ["y", "y"] | motion.held: names a motion twice, must name each once
 duration = 0.1 | duration = 0.1\ntime_step = -1 | run.time_step: is -1, must be a number greater than 0 or "auto" (s)
-duration = 0.1 | duration = 0.1\ntime_step = "car" | run.time_step: is "car", must be a number greater than 0 or "auto"
 # keys and tables
 duration = 0.1 |  | run.duration: is missing, must be a number greater than 0 (s)
 duration = 0.1 | duration = 0.1\nq = 1 | run.q: unknown key; allowed: duration, time_step, safety
 [boundary.right] | [boundary.rigth] | boundary.rigth: unknown side; allowed: left, right, bottom, top (did you mean righ
 [output] | [outputs] | outputs: unknown table; allowed: title, ground, packing, material, damping, motion, outside
-[output]\nsnapshots = 3 | [[output]]\nsnapshots = 3 | output: is [{"snapshots": 3}], must be a table
 [[monitor]] | [monitor] | monitor: is a table, must be a list of tables, each [[monitor]] in TOML
-[motion] | [[static]]\n[motion] | static: is [{}], must be a table
 # messages of the tables themselves
 size = [10, 5.0] | size = [10.1, 5.0] | packing.size:
 wave_p = "pulse"\n |  | boundary.left: names no wave;
 name = "P1" | name = "P/1" | monitor[1, P/1].name: is "P/1", must be made of the letters A-Z and a-z, digits, "_", "-" a
-name = "P1" | name = ".." | monitor[1, ..].name: is "..", must be made of
 """
 
 
@@ -116,7 +88,6 @@ def test_each_mistake_gets_one_plain_line(old: str, new: str, line: str) -> None
 
 def test_choices_and_near_keys_are_named() -> None:
     assert problem('pattern = "A"', 'pattern = "D"') == f'packing.pattern: is "D", must be one of {PATTERNS}'
-    assert problem('pattern = "A"\n', "") == f"packing.pattern: is missing, must be one of {PATTERNS}"
     mistyped, missing = problems_of(GOOD.replace('pattern = "A"', 'patern = "A"'))
     assert mistyped.startswith("packing.patern: unknown key; ")
     assert mistyped.endswith("(did you mean pattern?)")
@@ -160,21 +131,6 @@ def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
     assert found[0].endswith("(did you mean packing?)")
     missing = ["packing.pattern", "material.density", "run.duration"]
     assert [text.split(":")[0] for text in problems_of("[packing]")] == missing
-    least = '[packing]\npattern = "A"\nsize = [1.0, 1.0]\nradius = 0.5\n[run]\nduration = 1.0\n'
-    case = loads(least + "[material]\ndensity = 1.0\nemod = 1e9\npb_emod = 0\n")
-    assert (case.title, case.boundary, case.wave, case.monitor, case.motion.held) == ("", {}, {}, (), ())
-    assert (case.static, case.load) == (None, ())
-
-
-def test_text_that_is_not_toml_names_the_line() -> None:
-    for text, line in (
-        ("a = 1\nb = = 2\n", "line 2: Invalid value, in: b = = 2"),
-        ("[run]\n[run]\n", "line 2: "),
-        ("a = [1", "at the end: "),
-    ):
-        (found,) = problems_of(text)
-        assert found.startswith(line)
-        assert "column" not in found
 
 
 def test_a_file_gives_name_and_folder_and_unreadable_ones_are_named(tmp_path: Path) -> None:
@@ -202,3 +158,42 @@ def test_wave_files_are_looked_for_beside_the_case(tmp_path: Path) -> None:
     assert loads(text, tmp_path).wave["pulse"].peak() == 3.0
     (line,) = problems_of(text, tmp_path / "elsewhere")
     assert line == f'wave.pulse.path: no file "{tmp_path / "elsewhere" / "quake.txt"}"'
+
+
+def refusal(text: str) -> list[str]:
+    with pytest.raises(CaseError) as caught:
+        parsed(text, "bar.toml")
+    assert caught.value.source == "bar.toml"
+    return caught.value.problems
+
+
+def test_tables_and_values_are_read() -> None:
+    assert parsed("a = 1\n[b]\nc = [1.5, 'x']") == {"a": 1, "b": {"c": [1.5, "x"]}}
+    assert [value_of(text, "--set a") for text in ("1", "1e3", "true", "[1, 2]", '"x"', " plain text ", "a b")] == [
+        *(1, 1e3, True, [1, 2], "x", "plain text", "a b")
+    ]
+
+
+def test_nesting_has_an_end() -> None:
+    for depth in (DEEPEST + 1, 2000):
+        for text in (f"a = {'[' * depth}{']' * depth}", f"a{'.a' * depth} = 1"):
+            (line,) = refusal(text)
+            assert f"is nested more than {DEEPEST} deep" in line
+        with pytest.raises(CaseError, match="is nested more than"):
+            value_of(f"{'[' * depth}{']' * depth}", "--set a")
+    assert parsed(f"a = {'[' * (DEEPEST - 1)}{']' * (DEEPEST - 1)}")
+
+
+def test_numbers_have_a_length() -> None:
+    assert refusal(f"a = {'9' * 5000}") == ["has a number of more than 4000 digits"]
+    with pytest.raises(CaseError, match="has a number of more than 4000 digits") as caught:
+        value_of("9" * 5000, "--set a")
+    assert caught.value.source == "--set a"
+
+
+def test_a_mistake_in_the_syntax_comes_with_its_line_and_a_date_with_its_place() -> None:
+    assert refusal("a = 1\nb = \x00\n") == ["line 2: Invalid value, in: b = \\x00"]
+    assert len(refusal(f"a = {'x' * 1000}")[0]) < 200
+    assert refusal("a = '\udcff'") == ["has characters that are not text in UTF-8"]
+    said = "is a date or time, must be a number, a text, true or false, a list or a table"
+    assert refusal("[a]\nb = [1, 2020-01-01]\nc = 10:00:00") == [f"a.c: {said}", f"a.b[2]: {said}"]

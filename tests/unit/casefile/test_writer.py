@@ -54,14 +54,6 @@ def test_changes_replace_and_add_keys_and_touch_nothing_else() -> None:
     assert settled.static.boundary["bottom"].type == "roller"
 
 
-def test_a_change_within_a_table_given_as_a_whole_leaves_that_one_alone() -> None:
-    push = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
-    changed = with_changes(loads(STARTER), {"wave.pulse": push, "wave.pulse.period": 0.2})
-
-    assert changed.wave["pulse"].period == 0.2
-    assert push["period"] == 0.1
-
-
 NAMED = """
 [[load]]
 name = "weight"

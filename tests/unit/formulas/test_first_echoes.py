@@ -1,7 +1,5 @@
 """Times of echoes at monitors, computed by hand."""
 
-from translated import translated
-
 from dembound.formulas.first_echoes import echoes
 from dembound.running import plan
 
@@ -47,10 +45,3 @@ def test_columns_send_back_the_waves_of_local_sources_only(bar) -> None:
         assert 0.9 * way < 1000.0 * time <= way
     from_below = {"boundary.bottom": {"type": "viscous_input", "wave_s": "pulse"}, "load": []}
     assert lines(bar({**COLUMN, **from_below})) == {}
-
-
-def test_echoes_come_as_early_wherever_a_scene_is(bar) -> None:
-    """Moved so that every side is on the other side of zero."""
-    case = bar(COLUMN)
-    for by in ((-37.0, -81.0), (37.0, 11.0)):
-        assert lines(translated(case, by)) == lines(case)

@@ -23,7 +23,6 @@ def test_a_slope_leaves_a_floor_at_one_side() -> None:
     """It is level up to where the slope, of 15.7 m in 20 m, is half a diameter high; an eighth of one is rounding."""
     floor = floor_beside([SLOPE], BOX, "right", 1.0)
 
-    assert floor is not None
     assert floor.height == pytest.approx(15.3, abs=1e-12)
     assert floor.width == pytest.approx(15.0 + 0.5 * 20.0 / 15.7, abs=0.125)
     assert floor_beside([SLOPE], BOX, "left", 1.0) is None
@@ -32,14 +31,11 @@ def test_a_slope_leaves_a_floor_at_one_side() -> None:
 
 def test_holes_join_and_floors_may_be_below_the_disks_or_narrow() -> None:
     floor = floor_beside([rectangle(0.0, 20.0, 30.0, 31.0), rectangle(5.0, 12.0, 16.0, 20.5)], BOX, "left", 1.0)
-    assert floor is not None
     assert floor.height == pytest.approx(12.0, abs=1e-12)
     assert floor.width == pytest.approx(6.0, abs=0.125)
     floor = floor_beside([rectangle(60.0, -5.0, 80.0, 40.0)], BOX, "right", 1.0)
-    assert floor is not None
     assert floor.height == 0.0  # the lower side of the disks
     floor = floor_beside([polygon((35.0, 31.0), (71.0, 10.0), (71.0, 31.0))], BOX, "right", 1.0)
-    assert floor is not None
     assert floor.width < 2.0  # of a slope up to the side
 
 

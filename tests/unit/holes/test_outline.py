@@ -64,7 +64,7 @@ def test_the_nearest_point_is_at_the_least_distance_and_all_is_in_a_box_around_i
 
 
 @pytest.mark.parametrize("outline", OUTLINES)
-@pytest.mark.parametrize("box", [(2.0, -9.0, 9.0, 9.0), (-9.0, -0.9, 9.0, 3.3), (1.4, -1.4, 3.6, 1.2)])
+@pytest.mark.parametrize("box", [(2.0, -9.0, 9.0, 9.0), (1.4, -1.4, 3.6, 1.2)])
 def test_parts_within_a_box_are_all_that_lies_in_it(outline: Outline, box: tuple[float, float, float, float]) -> None:
     places = outline.period * ONE_ROUND[:-1]
     points = outline.at(places)

@@ -82,7 +82,7 @@ def test_bonds_without_a_stiffness_are_none() -> None:
             ROD.bond_rows(len(influence), np.array(influence))
 
 
-@pytest.mark.parametrize("horizon", [1, 3])
+@pytest.mark.parametrize("horizon", [3])
 def test_shares_of_the_stress_are_those_of_the_middle(horizon: int) -> None:
     everywhere, at_the_end = zoned(horizon, (0, COUNT)), zoned(horizon, (0, horizon + 3))
 
@@ -147,12 +147,9 @@ def test_without_complement_a_plane_has_springs_or_bonds(horizon: int) -> None:
 @pytest.mark.parametrize(
     ("asked", "zones"),
     [
-        ([(-5, 12)], [(0, 12)]),
         ([(30, 60)], [(30, 41)]),
         ([(3, 12)], [(0, 12)]),  # three nodes would be left, less than a family
         ([(4, 12)], [(4, 12)]),
-        ([(30, 38)], [(30, 41)]),
-        ([(10, 20), (20, 30)], [(10, 30)]),
         ([(10, 20), (21, 30)], [(10, 20), (21, 30)]),
         ([(20, 30), (5, 9), (8, 21)], [(5, 30)]),
     ],
@@ -232,18 +229,6 @@ def test_damage_of_finite_differences() -> None:
     # the first node has lost all it had, the next both the half volume there and the whole one
     assert damage[[0, 1, 2, 3, 20, 21]].tolist() == pytest.approx([1.0, 1.0, 0.5, 0.0, 0.5, 0.5], abs=4 * EPS)
     assert bonds.damage(6)[[0, 1, 2]].tolist() == pytest.approx([1.0, 1.0 / 3.0, 0.0], abs=4 * EPS)
-
-
-def test_breaks_are_reported_in_the_order_of_their_steps() -> None:
-    bonds = zoned(3, (10, 31))
-    bonds.bond_broken[2, 15], bonds.bond_broken[0, 12] = 7, 3
-    bonds.spring_broken[2] = 5
-    steps, pairs = bonds.breaks(0)
-
-    assert steps.tolist() == [3, 5, 7]
-    assert pairs.tolist() == [[12, 13], [2, 3], [15, 18]]
-    assert bonds.breaks(5)[1].tolist() == [[2, 3], [15, 18]]
-    assert bonds.breaks(8)[0].size == 0
 
 
 def ranges(bonds: Bonds, supported: list[int]) -> tuple[np.ndarray, np.ndarray]:

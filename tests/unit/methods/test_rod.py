@@ -6,7 +6,6 @@ import pytest
 from dembound.methods.bonds import Bonds
 from dembound.methods.patch import Patch
 from dembound.methods.rod import Range, Rod
-from dembound.methods.switch import Switch
 
 EPS = np.finfo(float).eps
 
@@ -42,7 +41,6 @@ def tension(rod: Rod) -> np.ndarray:
 
 LAYOUTS = {
     "springs": [],
-    "right of it": [(20, 40)],
     "across": [(12, 30)],
     "all": [(0, 51)],
     "near": [(10, 18), (24, 40)],
@@ -99,19 +97,6 @@ def test_a_patch_ends_with_its_range() -> None:
     assert bonds.zones == [(16, 21), (44, 51)]
     # each stage has its zones in all ranges, so that the limit of the time step is that of any of them
     assert [len(stage.zones) for stage in method.stages(ROD)] == [0, 3, 3, 3, 3]
-
-
-def test_a_switch_changes_all_ranges_when_one_reaches_its_stretch() -> None:
-    method = Switch(type="switch", horizon=3, trigger=0.5)
-    bonds = method.begin(ROD)
-    u = np.zeros(ROD.count)
-    u[31:] = 0.49 * STIFF.elongation
-    assert bonds.triggered(u).size == 0
-    u[31:] = 0.51 * STIFF.elongation
-    assert bonds.triggered(u).tolist() == [30]
-    method.on_trigger(bonds, u)
-
-    assert bonds.zones == [(0, 21), (20, 51), (51, 62)]
 
 
 def test_a_contact_is_no_bond_that_could_break() -> None:

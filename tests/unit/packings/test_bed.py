@@ -6,7 +6,7 @@ import pytest
 from dembound.errors import PackingError
 from dembound.kernels import pack
 from dembound.packings import bed as module
-from dembound.packings.bed import Bed, widest_circle
+from dembound.packings.bed import Bed
 from dembound.packings.brick import listed
 
 BOX = np.array([20.0, 20.0])
@@ -17,15 +17,6 @@ def test_three_contacts_hold_a_disk():
     ring = 10.0 + 1.99 * np.column_stack([np.cos(angles), np.sin(angles)])
     bed = Bed(BOX, np.vstack([ring, [[10.0, 10.0], [2.0, 2.0]]]), np.ones(5), held=3)
     assert bed.loose().tolist() == [False, False, False, False, True]
-
-
-def test_crowding_grows_loose_disks_up_to_the_largest():
-    bed = Bed(BOX, np.array([[2.0, 2.0], [8.0, 8.0], [15.0, 15.0]]), np.array([0.5, 0.995, 1.0]), held=0)
-    bed.crowd(np.array([True, True, False]))
-    assert bed.radii.tolist() == [0.51, 1.0, 1.0]
-    bed.crowd(np.array([False, True, False]))  # as large as allowed and still loose
-    assert bed.radii.tolist() == [0.51, 1.0]
-    assert bed.positions.tolist() == [[2.0, 2.0], [15.0, 15.0]]
 
 
 def test_running_out_of_steps_is_an_error(monkeypatch):
@@ -61,41 +52,3 @@ def test_kernel_forces_are_those_of_single_pairs():
     forces, work = np.full((2, 2), np.nan), np.empty((3, pack.BLOCK))
     assert pack.overlap_forces(np.array([[0.0, 3.0], [0.0, 4.0]]), pairs, forces, work) == 0.0
     assert not forces.any()
-
-
-def test_looking_for_requests_to_end_changes_no_bit(monkeypatch) -> None:
-    def relaxed() -> Bed:
-        rng = np.random.default_rng(3)
-        made = Bed(np.array([6.0, 6.0]), 6.0 * rng.random((60, 2)), np.full(60, 0.42), 0)
-        made.relax(1e-6, faint=1e-3)
-        return made
-
-    whole = relaxed()
-    monkeypatch.setattr(module, "AT_ONCE", 3 * 400)  # a few steps at once
-    np.testing.assert_array_equal(relaxed().positions, whole.positions)
-
-
-def test_the_widest_circle_between_disks_touches_three_and_overlaps_none():
-    rng = np.random.default_rng(7)
-    angles = 2.0 * np.pi * (np.arange(7) + rng.uniform(-0.2, 0.2, 7)) / 7.0
-    places = rng.uniform(1.0, 1.3, (7, 1)) * np.column_stack([np.cos(angles), np.sin(angles)])
-    radii = rng.uniform(0.4, 0.6, 7)
-    centre, radius = widest_circle(places, radii)
-    gaps = np.sort(np.hypot(*(places - centre).T) - radii - radius)
-    assert gaps[:3] == pytest.approx(np.zeros(3), abs=1e-12)
-    assert gaps[3] > 0.0
-    ways = rng.uniform(-0.5, 0.5, (20_000, 2))  # no circle of another place is wider
-    assert (np.hypot(*(ways[:, None] - places).transpose(2, 0, 1)) - radii).min(axis=1).max() <= radius
-    assert widest_circle(places[:2], radii[:2])[1] == np.inf  # two disks hold nothing between them
-
-
-def test_loose_disks_are_fitted_into_their_room():
-    """Of two loose neighbours the second waits; one with room for more than the largest disk is removed."""
-    angles = np.deg2rad([90.0, 210.0, 330.0])
-    ring = 10.0 + 1.99 * np.column_stack([np.cos(angles), np.sin(angles)])
-    pressed = ring[0] + np.array([0.0, 2.09])  # a larger disk, with an overlap of 0.01
-    places = np.vstack([ring, [[10.1, 9.95], [2.0, 2.0], [3.0, 2.0], pressed]])
-    bed = Bed(BOX, places, np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 1.1]), held=0)
-    bed.fill_cages(np.array([False, False, False, True, True, True, False]), 2.0)
-    assert bed.positions[3:5] == pytest.approx(np.array([[10.0, 10.0], [2.0, 2.0]]), abs=1e-12)
-    assert bed.radii.tolist() == pytest.approx([1.0, 1.0, 1.0, 0.99 + 2.0 * 0.01, 0.5, 1.1])

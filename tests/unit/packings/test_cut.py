@@ -5,7 +5,6 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from dembound.packings import Square
 from dembound.packings.brick import Brick
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly, tile
@@ -13,10 +12,8 @@ from dembound.packings.tiling import Assembly, tile
 OPEN = (False, False)
 
 
-@pytest.fixture(params=["square", "random", "edged"])
+@pytest.fixture(params=["random", "edged"])
 def brick(request) -> Brick:
-    if request.param == "square":
-        return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
     return request.getfixturevalue(f"{request.param}_brick")
 
 

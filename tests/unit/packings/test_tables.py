@@ -33,29 +33,16 @@ def test_the_extent_is_given_in_metres_or_in_bricks():
     [
         ({"size": [1010.0, 50.0], "brick": [50.0, 50.0]},
          "size: 1010 m is not a whole number of bricks of 50 m; 1000 or 1050 would be"),
-        ({"size": [5.0, 10.0]}, "size: 5 m is not a whole number of bricks of 10 m; 10 would be"),
         ({"brick": [1.0, 10.0]}, "brick: 1 m is too small, 2.4 m is the least"),
         ({"size": [1e19, 1e19]}, r"size: holds 4e\+38 disks of this radius, must hold at most 500,000,000"),
-        ({"size": None, "bricks": [10**8, 10**8]}, r"bricks: holds 4e\+18 disks of this radius, must hold at most "),
         ({"radius": 0.001, "size": [10.0, 10.0]}, r"brick: holds 2.5e\+07 disks of this radius, must hold at most 1"),
         ({"brick": [5e-324, 5e-324]}, "is 4.94066e-324, must be 0 or of a size between 1e-30 and 1e"),
-        ({"size": None, "bricks": [10**9, 1]}, "less than or equal to 500000000"),
         ({"bond_gap": 0.3}, "bond_gap: 0.3 m is larger than the mean radius"),
-        ({"radius_ratio": 0.9}, "greater than or equal to 1"),
     ],
 )  # fmt: skip
 def test_mistakes_are_named(change, message):
     with pytest.raises(ValidationError, match=message):
         read({**B, **change})
-
-
-def test_square_brick_is_one_disk_in_its_cell():
-    brick = Square(size=(2.0, 1.0), radius=0.25).pack(1e9)
-    assert brick.positions.tolist() == [[0.25, 0.25]]
-    assert brick.vectors.tolist() == [[0.5, 0.0], [0.0, 0.5]]
-    assert brick.gaps.tolist() == [0.0, 0.0]
-    assert brick.solid_fraction == pytest.approx(np.pi / 4)
-    assert brick.coordination == 4
 
 
 def test_edge_radii_are_adjusted_to_whole_disks():
@@ -66,7 +53,7 @@ def test_edge_radii_are_adjusted_to_whole_disks():
     assert 28 * on_x + 2 * on_y == pytest.approx(8.0)  # the corner disk and 14 more
 
 
-@pytest.mark.parametrize("modulus", [1e7, 2e12])
+@pytest.mark.parametrize("modulus", [1e7])
 def test_confining_stress_out_of_range_names_the_range(modulus):
     with pytest.raises(CaseError, match=r"packing\.confining_stress: 10 MPa .* can be packed"):
         read({**B, "confining_stress": 1e7}).pack(modulus)

@@ -64,9 +64,8 @@ def test_a_factor_has_the_digits_that_are_known(beta, ratio, digits) -> None:
     assert known(beta, ratio) == digits
 
 
-@pytest.mark.parametrize("full", [False, True])
-def test_of_identical_rows_one_is_stepped(long_bar, full) -> None:
-    how = Calibrating(full=full)
+def test_of_identical_rows_one_is_stepped(long_bar) -> None:
+    how = Calibrating()
     found, expected = (calibrate(long_bar({"reduce.rows": rows}), "right", how) for rows in (True, False))
 
     (saved,) = set(found.shortened) - set(expected.shortened)
@@ -78,14 +77,10 @@ def test_of_identical_rows_one_is_stepped(long_bar, full) -> None:
 def test_other_sides_keep_their_supports_but_not_their_waves(long_bar) -> None:
     absorbing = {"beta_s": 0.3, "half_mass": True}
     driven = {"type": "viscous_input", "wave_s": "pulse", **absorbing}
-    # a fixed side also lets rotations stand still, so these are held in both
-    for sides in (
-        ({"type": "velocity", "wave_s": "pulse"}, {"type": "fixed"}),
-        (driven, {"type": "viscous", **absorbing}),
-    ):
-        cases = [long_bar({"boundary.top": top, "motion.held": ["y", "rotation"]}) for top in sides]
-        own, at_rest = (calibrate(case, "right", Calibrating(full=True, tolerance=2.0)) for case in cases)
-        assert own.outgoing == at_rest.outgoing
+    sides = driven, {"type": "viscous", **absorbing}
+    cases = [long_bar({"boundary.top": top, "motion.held": ["y", "rotation"]}) for top in sides]
+    own, at_rest = (calibrate(case, "right", Calibrating(full=True, tolerance=2.0)) for case in cases)
+    assert own.outgoing == at_rest.outgoing
 
 
 def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar) -> None:
@@ -100,11 +95,10 @@ def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar
         "hole": [{"name": "niche", "type": "circle", "centre": [3.0, 1.0], "radius": 0.7}],
     }
     plain = {"material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.3}}
-    for full in (False, True):
-        how = Calibrating(start=0.5, full=full)
-        found, expected = (calibrate(long_bar(changes), "right", how) for changes in (busy, plain))
-        assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
-        assert found.shortened == [*expected.shortened, "no holes", "no static stage", "no loads", "the elastic law"]
+    how = Calibrating(start=0.5, full=True)
+    found, expected = (calibrate(long_bar(changes), "right", how) for changes in (busy, plain))
+    assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
+    assert found.shortened == [*expected.shortened, "no holes", "no static stage", "no loads", "the elastic law"]
 
 
 def test_s_waves_are_taken_where_p_motion_is_held_or_only_s_waves_come(long_bar) -> None:
@@ -129,15 +123,11 @@ def test_the_homogenised_factor_needs_no_run(long_bar) -> None:
     )
 
 
-def test_a_strip_is_as_long_as_an_echo_needs_and_one_brick_wide_where_sides_matter(bar, long_bar) -> None:
+def test_a_strip_is_as_long_as_an_echo_needs_and_one_brick_wide_where_sides_matter(long_bar) -> None:
     found = calibrate(long_bar(), "right", Calibrating(tolerance=1.0))
     # 17.5 m of 40 m, both rows: y is held, so the free sides do nothing
     assert found.particles == 2 * int(0.35 * LENGTH / 0.5)
     assert "a strip of 17.5 m, the scene has 40 m" in found.shortened
-
-    longer = calibrate(bar({"wave.pulse.period": 0.05}), "right", Calibrating(tolerance=1.0))
-    assert longer.particles == 2 * 35
-    assert "a strip of 17.5 m, the scene has 10 m" in longer.shortened
 
     # a bar that is free to bend keeps its sides for P waves, not for S waves, which would bend it; 18 disks are 0.35 of
     # the length of these, at the 500 m/s of touching disks, whose rotations take part
@@ -146,11 +136,6 @@ def test_a_strip_is_as_long_as_an_echo_needs_and_one_brick_wide_where_sides_matt
         found = calibrate(long_bar({"motion.held": [], **changes}), "right", Calibrating(tolerance=1.0))
         assert found.particles == particles
         assert ("one brick wide and periodic sideways" in found.shortened) == (particles < 70)
-
-    whole = calibrate(long_bar(), "right", Calibrating(start=0.5, full=True))
-    assert whole.particles == 160
-    assert not any("strip" in sentence for sentence in whole.shortened)
-    assert whole.result == pytest.approx(1.0, abs=2e-3)
 
 
 def test_factors_are_those_of_the_scenes_own_side_where_the_strip_has_other_disks(long_bar) -> None:
@@ -179,21 +164,12 @@ def test_the_matched_factor_is_kept_where_it_returns_less(long_bar, monkeypatch,
     assert found.beta[-1] == pytest.approx(found.result, abs=1e-4)
     words = f"returned: {100 * shares[0]:g} % with {own:g}, {100 * shares[1]:g} % with the matched {matched:g}"
     assert found.compared == words + (", which is kept" if kept else "")
-    # Z's iteration is that of the paper
-    assert calibrate(long_bar(), "right", Calibrating(method="ratio", tolerance=1e-4)).compared == ""
-    assert len(asked) == 1
 
 
 @pytest.mark.parametrize(
     ("side", "table", "plain", "without"),
     [
-        ("right", {"type": "viscoelastic", **SPRINGS}, "viscous", "viscoelastic sides without their springs"),
-        (
-            "left",
-            {"type": "viscoelastic_input", **SPRINGS},
-            "viscous_input",
-            "viscoelastic sides without their springs",
-        ),
+        ("left", {"type": "viscoelastic_input", **SPRINGS}, "viscous_input", SPRUNG),
         ("right", {"type": "free_field"}, "viscous", "free-field sides without their column"),
     ],
 )
@@ -201,14 +177,12 @@ def test_sides_are_calibrated_by_their_dashpots_from_the_cases_own_factor(
     long_bar, side, table, plain, without
 ) -> None:
     dashpots = {"beta_p": 0.7} | ({"wave_p": "pulse"} if side == "left" else {})
-    for full in (False, True):
-        found, expected = (
-            calibrate(long_bar({f"boundary.{side}": each | dashpots}), side, Calibrating(full=full))
-            for each in (table, {"type": plain})
-        )
-        assert found.beta[0] == 0.7
-        assert (found.beta, found.outgoing, found.kind) == (expected.beta, expected.outgoing, expected.kind)
-        assert found.shortened == [*expected.shortened, without]
+    found, expected = (
+        calibrate(long_bar({f"boundary.{side}": each | dashpots}), side) for each in (table, {"type": plain})
+    )
+    assert found.beta[0] == 0.7
+    assert (found.beta, found.outgoing, found.kind) == (expected.beta, expected.outgoing, expected.kind)
+    assert found.shortened == [*expected.shortened, without]
 
 
 def test_half_masses_and_the_strength_of_the_cases_own_wave_stay(long_bar) -> None:
@@ -233,13 +207,10 @@ class Sprung(Viscous):
     ("side", "options", "said"),
     [
         ("right", {"how": Calibrating(tolerance=float("nan"))}, "--tolerance"),
-        ("right", {"how": Calibrating(tolerance=0.0)}, "--tolerance"),
-        ("right", {"how": Calibrating(start=float("nan"))}, "to start a calibration"),
         ("right", {"how": Calibrating(start=float("inf"))}, "to start a calibration"),
         ("right", {"how": Calibrating(start=0.0)}, r"boundary\.right\.beta_p: is 0, must be above 0"),
         ("right", {"motion": "s"}, r"motion\.held: holds y, the motion of S waves at the side right"),
         ("top", {}, r"boundary\.top: is free, .*here: left, right"),
-        ("bottom", {}, r"boundary\.bottom: is fixed, .*here: left, right"),
     ],
 )
 def test_what_cannot_be_calibrated_is_refused(long_bar, side: str, options: dict, said: str) -> None:

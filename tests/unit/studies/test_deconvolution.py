@@ -29,36 +29,6 @@ def test_it_moves_the_surface_as_given(alpha: float) -> None:
     assert f"up to {found.magnification:.3g} times" in found.sentence
 
 
-def test_ground_above_a_box_of_disks_counts_up_to_its_surface() -> None:
-    """The same wave moves the surface whether disks reach it or a continuum does."""
-    ground = {"size": [20.0, 20.0], "origin": [0.0, -20.0]}
-    sides = {
-        **{side: {"type": "outside"} for side in ("left", "right")},
-        "bottom": {"type": "outside", "wave_s": "push"},
-    }
-    found = [
-        incident_below(
-            level_ground(
-                small(
-                    {
-                        "ground": ground,
-                        "packing": {"pattern": "A", "size": [10.0, high], "radius": 0.25, "origin": [5.0, -15.0]},
-                        "material": {"density": 2000.0, "s_wave_speed": 200.0},
-                        "boundary": sides if high == 15.0 else {**sides, "top": {"type": "outside"}},
-                        "wave": {"push": {"type": "ricker", "amplitude": 0.1, "frequency": 6.0}},
-                        "run": {"duration": 0.8},
-                    }
-                )
-            ),
-            SURFACE,
-            STEP,
-        )
-        for high in (15.0, 10.0)
-    ]
-    assert found[0].early == found[1].early >= 0.1
-    np.testing.assert_allclose(found[1].velocity, found[0].velocity, atol=1e-9)
-
-
 def relaxed(frequency: np.ndarray) -> np.ndarray:
     """M(ω)/M₀ of three mechanisms, Q = 20."""
     weights, times = np.array([0.0641, 0.0472, 0.0749]), np.array([0.56, 0.0917, 0.0146])

@@ -50,16 +50,6 @@ def test_all_combinations_are_made_of_numbers_that_make_sense():
     assert len(lattices([1, 2], [0.01, 0.005], [1e-3, 5.6e-6], 2500.0)) == 8
 
 
-@pytest.mark.filterwarnings("error")
-def test_the_largest_and_smallest_numbers_neither_overflow_nor_vanish():
-    for spacing, speed, time_step in ((1e-30, 1e15, 9e-46), (1e30, 1e-15, 1e30)):
-        for lattice in lattices([1, 3], [spacing], [0.0, time_step], speed):
-            # the longest of ten waves runs at c but for (kΔx)²(m² + 1)/48, (0.1π)²·10/48 = 2.1 % (L eq. 12 expanded)
-            speeds = lattice.phase_velocity(lattice.shortest * np.arange(1, 11) / 10.0)
-            assert speeds[0] == pytest.approx(speed, rel=0.025)
-            assert np.all(speeds > 0.0)
-
-
 def test_table_holds_the_curves(tmp_path):
     stable, unstable = lattices([1], [0.005], [1e-6, 3e-6], 2500.0)
     shares = [(0.25, 0.75), (1.0 / 3.0, 2.0 / 3.0)]
@@ -87,9 +77,7 @@ def test_table_holds_the_curves(tmp_path):
 @pytest.mark.parametrize(
     ("method", "horizons"),
     [
-        ({"type": "finite_difference"}, [1]),
         ({"type": "peridynamics", "horizon": 3}, [3]),
-        ({"type": "peridynamics", "horizon": 2, "corrected_ends": True}, [2]),
         ({"type": "switch", "horizon": 4, "before": "peridynamics"}, [1, 4]),
         ({"type": "patch", "horizon": 3}, [1, 3]),
     ],

@@ -1,14 +1,11 @@
 """The measured largest step: that of the eigenvalue, and a verdict on the case's own."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError
 from dembound.kinds import kind_of, loads, with_changes
-from dembound.studies.noise import COARSE
-from dembound.studies.stability import _affordable, _bracketed, measure
+from dembound.studies.stability import measure
 
 ROW = """
 [packing]
@@ -81,24 +78,3 @@ def test_columns_are_measured_alone() -> None:
 
     assert [run.part for run in found.long_runs] == ["column", "body"]
     assert found.is_stable
-
-
-def test_far_from_the_computed_limit_a_wider_bracket_is_enough() -> None:
-    """In as many steps as its width needs; here the limit is taken to be 0.8 of what it is."""
-    trial = kind_of(loads(ROW)).trials(loads(ROW))[0][0]
-    found = _bracketed(replace(trial, limit=0.8 * trial.limit), print)
-
-    assert 0.5 * COARSE < found.width <= COARSE * (1.0 + 1e-9)
-    # half the bracket, and half a resolution by which growth may be missed
-    assert found.measured == pytest.approx(trial.limit, rel=COARSE)
-    assert found.calm.steps[-1] < 2000  # a tenth of the width needs √10 times these, 3,480
-
-
-def test_large_scenes_have_fewer_steps_as_counted() -> None:
-    trial = kind_of(loads(ROW)).trials(loads(ROW))[0][0]
-    large = replace(trial, step_cost=4e4)  # 0.8 s are 20,000 of 40 µs
-
-    assert _affordable([large]) == 20_000
-    assert _affordable([large, large]) == 10_000
-    assert _affordable([replace(trial, step_cost=1e9)]) == 5_000
-    assert _affordable([trial]) == 100_000

@@ -71,13 +71,11 @@ def test_frequencies_do_not_suffer_from_a_long_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("gauge.csv", "# time,stress\n0,0.5\n1, -2\n"),
         ("gauge.csv", "Time (s),Stress 1 (Pa)\n0,0.5\n1, -2\n"),
         ("gauge.csv", "\ufefft;s\n0;0.5\n1;-2\n"),
         ("gauge.csv", "0;0,5\n1,0;-2\n"),
         ("gauge.txt", "# a gauge; in Pa\nt; s\n0; 0.5  # first\n1; -2\n"),
         ("gauge.txt", "\ufefftime stress\n0 0.5\n1\t-2\n"),
-        ("gauge.txt", "\ufeff0 0.5\r\n1 -2\r\n"),
     ],
 )
 def test_headers_marks_of_spreadsheets_and_semicolons_are_read(tmp_path: Path, name: str, text: str) -> None:
@@ -89,13 +87,9 @@ def test_headers_marks_of_spreadsheets_and_semicolons_are_read(tmp_path: Path, n
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("# only words\n", "contains no numbers"),
         ("0 0 0\n1 1 1\n", r"has 3 columns, must have two: time \(s\), values; .* `dembound wave` makes"),
-        ("0\n1\n", "has 1 columns"),
         ("0 0\n1 1 1\n", "is not two columns of numbers"),
-        ("time velocity\ns m/s\n0 0\n1 1\n", "is not two columns of numbers"),
         ("time 0\n0 0\n1 1\n", "is not two columns of numbers"),
-        ("0,0;1.000,5\n1;1\n", "is not two columns of numbers"),
         ("0,0\n1,1\n", "is not two columns of numbers"),
         ("0 0\n1 nan\n", "not finite"),
         ("0 1\n", "at least two"),
@@ -140,7 +134,7 @@ def burst_file(share: float = 0.2, count: int = COUNT) -> str:
     return written(times, burst(share, times, count))
 
 
-@pytest.mark.parametrize("share", [0.1, 0.2, 0.3, 0.4])
+@pytest.mark.parametrize("share", [0.1, 0.4])
 def test_a_record_keeps_frequencies_up_to_almost_half_its_rate(tmp_path: Path, share: float) -> None:
     wave = record(tmp_path, burst_file(share), start=2.0, scale=-3.0)
     length = STEP * (COUNT - 1)
@@ -197,7 +191,6 @@ PULSE = np.sin(np.pi * ROWS / ROWS[-1]) ** 2
     ("times", "values", "joined"),
     [
         (ROWS, burst(0.2, ROWS), "band"),
-        (np.round(ROWS * 25.0 / 32.0, 3), burst(0.2, ROWS), "band"),  # 128 samples/s, written with three digits
         (np.delete(ROWS, 200), np.delete(burst(0.2, ROWS), 200), "lines"),  # a lost sample
         (ROWS, PULSE, "lines"),  # one-sided
         (ROWS, burst(0.2, ROWS) + 0.03, "lines"),  # begins with 3 % of its peak

@@ -24,25 +24,15 @@ VELOCITY, LOAD = "m/s", "Pa"
         ("t (s), v (m/s)", VELOCITY, 1.0, []),
         ("", VELOCITY, 1.0, []),
         ("rates by g. m. at the west end, 2 m below it, according to him, every 5 ms", VELOCITY, 1.0, []),
-        ("station Ulm (Germany), component (NS)\ntime velocity", VELOCITY, 1.0, []),
-        ("time (s), velocity (NS) of the motion and/or its mean (x)", VELOCITY, 1.0, []),
         ("pressure on the bar, as a share of its peak (1)", LOAD, 1.0, []),
         ("time[ms] v[mm/s]", VELOCITY, 1.0, ["says ms", "scale = 0.001"]),
         ("time_s,vel_cm/s", VELOCITY, -1.0, ["scale = 0.01"]),
-        ("time_s,vel_cm/s", VELOCITY, 0.01, []),
         ("time(s) acc(g)", VELOCITY, 1.0, ["likely accelerations"]),
-        ("time acc_g", VELOCITY, 0.5, ["likely accelerations"]),
-        ("t v(m/s2)", VELOCITY, 1.0, ["likely accelerations"]),
         ("t(s) p(MPa)", LOAD, 1.0, ["scale = 1e+06"]),
-        ("t(s) p(MPa)", LOAD, 1e6, []),
         ("t(s) displacement (mm)", VELOCITY, 1.0, ["likely displacements"]),
         ("t(s) v(m/s), from cm/s", VELOCITY, 1.0, []),
         ("t(s) v[counts]", VELOCITY, 1.0, ["likely counts"]),
-        ("t(s) v[counts]", VELOCITY, 2e-8, []),
-        ("t(s) u(V)", LOAD, 1.0, ["likely voltages"]),
         ("time (s), velocity (furlong/s)", VELOCITY, 1.0, ['"furlong/s" in brackets, no unit']),
-        ("time (s), velocity (furlong/s)", VELOCITY, 201.0, []),
-        ("t/ms v/m/s", VELOCITY, 1.0, ["says ms"]),
         ("t (s), a (g)", "m/s²", 1.0, ["scale = 9.80665"]),
         ("t (s), F (kN)", "N", 1.0, ["scale = 1000"]),
     ],
@@ -56,22 +46,15 @@ def test_units_of_a_header_are_compared_with_those_that_are_read(header, read, f
 PER_SECOND = ("/s", "/sec", "/second", " per second", " s^-1", " s-1", ".s-1", "·s⁻¹", " s**-1", " s^(-1)")
 SPELLED = [
     *((VELOCITY, f"cm{per}", 0.01) for per in PER_SECOND),
-    *((VELOCITY, f"µm{per}", 1e-6) for per in PER_SECOND),
-    *((VELOCITY, unit, size) for unit, size in (("nm/s", 1e-9), ("centimetres per second", 0.01), ("CM/SEC", 0.01))),
-    *((VELOCITY, unit, 0.0254) for unit in ("ips", "in/s", "inch/sec")),
-    *((VELOCITY, unit, 0.3048) for unit in ("fps", "ft/s")),
-    *((VELOCITY, unit, 0.01) for unit in ("kine", "cms")),
-    *((VELOCITY, unit, 0.514444) for unit in ("kn", "knots", "kt")),
-    *((VELOCITY, unit, 1.0 / 3.6) for unit in ("km/h", "km/hr", "kph", "km h^-1")),
-    *((VELOCITY, unit, 0.44704) for unit in ("mph",)),
-    *((LOAD, unit, 1e3) for unit in ("kPa", "kN/m2", "kN/m^2", "kN m-2", "kN·m⁻²")),
-    *((LOAD, unit, 1e6) for unit in ("N/mm²", "N/mm**2", "MPa")),
-    *((LOAD, unit, 98066.5) for unit in ("kg/cm2", "kgf/cm²", "kgf cm^-2")),
+    *((VELOCITY, unit, size) for unit, size in (("µm/s", 1e-6), ("centimetres per second", 0.01), ("CM/SEC", 0.01))),
+    *((VELOCITY, unit, size) for unit, size in (("in/s", 0.0254), ("ft/s", 0.3048), ("knots", 0.514444))),
+    *((VELOCITY, unit, size) for unit, size in (("kine", 0.01), ("km h^-1", 1.0 / 3.6), ("mph", 0.44704))),
+    *((LOAD, unit, size) for unit, size in (("kN·m⁻²", 1e3), ("N/mm**2", 1e6), ("kgf/cm²", 98066.5))),
     *((LOAD, unit, size) for unit, size in (("kbar", 1e8), ("dyn/cm2", 0.1), ("psi", 6894.76), ("t/m2", 9806.65))),
 ]
 
 
-@pytest.mark.parametrize("place", ["time (s), value ({})", "time [s] value [{}]", "time value\n(s) ({})"])
+@pytest.mark.parametrize("place", ["time (s), value ({})", "time value\n[s] [{}]"])
 @pytest.mark.parametrize(("read", "unit", "size"), SPELLED)
 def test_units_are_known_in_every_usual_spelling(read, unit, size, place) -> None:
     (doubt,) = doubts_of_header(place.format(unit), read, 1.0)
@@ -79,13 +62,13 @@ def test_units_are_known_in_every_usual_spelling(read, unit, size, place) -> Non
     assert unit in doubt
 
 
-@pytest.mark.parametrize("name", ["vel_cm_s", "vel_cm/s", "v_cm_per_s", "vel_cms", "v cm/s", "v cm s-1", "v in cm/sec"])
+@pytest.mark.parametrize("name", ["vel_cm_s", "v_cm_per_s", "vel_cms", "v cm s-1"])
 def test_units_are_known_behind_names(name) -> None:
     (doubt,) = doubts_of_header(f"time_s, {name}", VELOCITY, 1.0)
     assert "scale = 0.01" in doubt
 
 
-@pytest.mark.parametrize("unit", ["kN", "N", "kgf", "tonnes", "t", "lbf"])
+@pytest.mark.parametrize("unit", ["kN", "tonnes"])
 def test_forces_are_no_pressures(unit) -> None:
     (doubt,) = doubts_of_header(f"time (s), load ({unit})", LOAD, 1.0)
     assert "likely forces; its values are read as pressures in Pa" in doubt
@@ -111,19 +94,13 @@ LOST = without(0.62, 0.75)
     ("time", "values", "words"),
     [
         (TIME, motion(TIME), None),
-        (TIME, np.where(TIME > 3.0, 1.0, 0.0), None),  # a step, a triangle and square waves are meant as they are
         (TIME, np.interp(TIME, [1.0, 1.1, 1.2], [0.0, 1.0, 0.0]), None),
-        (TIME, np.sign(np.sin(2.0 * np.pi * 2.0 * TIME + 0.01)), None),
         (TIME, np.sin(2.0 * np.pi * 0.7 * TIME), None),  # ends within a period
-        (TIME[:10], motion(TIME[:10]), None),
         (TIME, SHORT, None),
         (TIME, np.where(TIME < 2.0, 0.0, SHORT), None),  # fronts from rest, and back to it
-        (TIME, np.where(TIME > 2.2, 0.0, SHORT), None),
         (TIME, np.where(np.abs(TIME - 2.0) < 1.0, 2.0 - TIME, 0.0), None),  # fronts of an N
-        (TIME, np.where(TIME < 2.0, 1.0, -1.0) * (np.abs(TIME - 2.0) < 1.0), None),
         (TIME, np.where(TIME < 2.0, 0.5, np.exp(2.0 - TIME)), None),  # two levels of a load
         (TIME, np.where(TIME < 2.0, 1.0, -1.0) * SHORT, "times any other step, at 1.99 s: does its sign"),
-        (TIME, np.where(np.abs(TIME - 2.0) < 0.2, -1.0, 1.0) * SHORT, "does its sign change"),
         (TIME, np.where(TIME < 1.5, 1.0, -1.0) * TWO_SIDED, "does its sign change"),
         (TIME, np.where(TIME < 2.0, 1.0, 0.3) * SHORT, "times any other step, at 1.99 s: are samples lost?"),
         (LOST, motion(LOST), "no sample from 0.62 to 0.75 s, 13 times"),

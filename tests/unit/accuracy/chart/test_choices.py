@@ -3,13 +3,9 @@
 import pytest
 
 from dembound.accuracy.chart.study import defaults, from_table
-from dembound.accuracy.choice import choices_of
-from dembound.accuracy.of_disks import chart_choices
-from dembound.disks.matching import homogenised_beta
-from dembound.disks.scene import build
+from dembound.accuracy.choice import changed, choices_of
 from dembound.errors import CaseError
-from dembound.kinds import load, with_changes
-from dembound.shipped import folder, names
+from dembound.kinds import with_changes
 
 
 def test_the_table_gives_choices(bar) -> None:
@@ -32,21 +28,6 @@ def test_the_table_gives_choices(bar) -> None:
         from_table(bar({"chart": {"choice": twice}}))
 
 
-IN_CI = ("quickstart", "zhou2018/long_bar_c", "charts/blast", "spall")
-
-
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in IN_CI else pytest.mark.slow) for n in names()])
-def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
-    monkeypatch.setattr(chart_choices, "_matched_factors", lambda case: iter(()))  # they need the packing
-    case = load(folder() / f"{name}.toml")
-    choices, _ = choices_of(case, defaults(case))
-    assert len(choices) >= 4
-    for choice in choices:  # rows of frames are coarsened with the disks
-        if "packing.radius" in choice.changes and hasattr(case.packing, "edge_radius"):
-            ratio = choice.changes["packing.radius"] / case.packing.radius
-            assert choice.changes["packing.edge_radius"] == pytest.approx(ratio * case.packing.edge_radius)
-
-
 def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
     found = defaults(bar({"boundary.right.beta_p": 0.8}))
     assert found == {
@@ -57,18 +38,6 @@ def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
         "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
         "right free": {"boundary.right": {"type": "free"}},
     }
-
-
-def test_matched_factors_are_a_choice_where_others_are_given(bar) -> None:
-    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
-    own = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
-    beta = homogenised_beta(build(own), "right", "p")
-    assert 0.5 < beta < 0.95
-    other = with_changes(own, {"boundary.right.beta_p": 1.0, "boundary.left.beta_p": 1.0})
-    # not the left side, where the wave enters; y is held
-    assert defaults(other)["right, matched β"] == {"boundary.right.beta_p": "matched"}
-    for near in (own, with_changes(own, {"boundary.right.beta_p": 1.005 * beta})):
-        assert not any("matched" in name for name in defaults(near))
 
 
 TUNNEL = {
@@ -106,11 +75,16 @@ def test_a_box_round_holes_is_a_choice_where_it_saves_much(bar) -> None:
     sides = {side: changes[f"boundary.{side}"] for side in ("left", "right", "top")}
     assert sides == dict.fromkeys(sides, OUTSIDE)
     assert changes["boundary.bottom"] == {"type": "outside", "wave_s": "pulse"}
-    bricks = bar({**TUNNEL, "packing": {"pattern": "A", "bricks": [120, 100], "radius": 0.5}})
-    assert defaults(bricks)[f"box of {wide:g} m × {high:g} m, outside"]["packing"] == changes["packing"]
     assert not any(name.startswith("box") for name in defaults(with_changes(case, changes)))  # it is one
     far = {"name": "far", "position": [0.5, 99.5]}  # in the layer that absorbs
     assert not any(name.startswith("box") for name in defaults(with_changes(case, {"monitor": [far]})))
+
+
+def test_coarser_disks_fill_the_same_extent_where_bricks_are_counted(bar) -> None:
+    case = bar({"packing": {"pattern": "A", "radius": 0.25, "bricks": [24, 12]}, "monitor": []})
+    coarser = {name: changed(case, each).packing for name, each in defaults(case).items() if "radius" in name}
+    assert {packing.radius for packing in coarser.values()} == {0.375, 0.5}
+    assert all(packing.extent == case.packing.extent for packing in coarser.values())
 
 
 def test_of_bars_all_methods_with_all_spacings(spalling) -> None:
@@ -127,7 +101,7 @@ def test_of_bars_all_methods_with_all_spacings(spalling) -> None:
     ]
 
 
-@pytest.mark.parametrize("step", [{"safety": 0.5}, {"courant": 0.3}, {"time_step": 1e-6}])
+@pytest.mark.parametrize("step", [{"safety": 0.5}, {"courant": 0.3}])
 def test_all_choices_are_valid_whatever_step_the_bar_has(spalling, step) -> None:
     case = spalling({"run": {"duration": 1.5e-3, **step}})
     choices, left_out = choices_of(case, defaults(case))

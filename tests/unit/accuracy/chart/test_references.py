@@ -36,11 +36,8 @@ def test_a_bar_that_spalls_has_one_until_then(spalling) -> None:
     [
         {"bar.attenuation": 0.1},
         {"load.1.side": "right"},
-        {"load.1.pressure": -12e6},
-        {"boundary.right": {"type": "viscous"}},
         {"boundary.left": {"type": "viscous"}},
         {"wave.hit": {"type": "cosine", "amplitude": 1.0, "period": 4e-4}},
-        {"wave.hit.fall": 9e-4},
     ],
 )
 def test_other_bars_have_none(spalling, changes) -> None:
@@ -48,7 +45,7 @@ def test_other_bars_have_none(spalling, changes) -> None:
         exact_of(spalling(changes))
 
 
-@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("viscous", 0.0), ("matched_layer", 0.0)])
+@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("matched_layer", 0.0)])
 def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
     case = spalling({"bar.strength": 1e9, "boundary.right": {"type": end}})
     time = np.array([0.7e-3, 1.7e-3])  # 0.5 m from the load: the crest of 0.2 ms, and its echo
@@ -68,25 +65,11 @@ def test_a_plane_wave_that_leaves_has_one(bar) -> None:
     assert exact_of(bar({**wave, **sides})).motion == "s"
 
 
-def test_a_plane_wave_starts_at_its_side_wherever_the_scene_is(bar) -> None:
-    time = np.linspace(0.0, 0.02, 21)
-
-    def wave(x: float) -> np.ndarray:
-        gauge = {"name": "gauge", "position": [x + 1.25, 0.5]}
-        case = bar({**EVEN, "packing.origin": [x, 0.0], "monitor": [gauge]})
-        at = History.of(np.array([x + 1.25, 0.5]), time, np.zeros((21, 3)), np.zeros((21, 3)))
-        return np.asarray(exact_of(case).motions(case, {"gauge": at})["gauge"].velocity[:, 0])
-
-    assert np.abs(wave(0.0)).max() > 0.0
-    np.testing.assert_allclose(wave(-40.0), wave(0.0), rtol=0.0, atol=1e-9)  # rounding of 40 m over the wavelength
-
-
 @pytest.mark.parametrize(
     "changes",
     [
         {"motion.held": []},
         {"boundary.right": {"type": "free"}},
-        {"boundary.top": {"type": "fixed"}},
         {"hole": [{"name": "h", "type": "circle", "centre": [8.0, 0.5], "radius": 0.3}]},
         {"material.law": "linearpbond"},
         {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, "motion.held": []},
@@ -134,12 +117,6 @@ def test_its_motion_is_that_of_each_choice_at_the_monitors_of_the_choice() -> No
     crests = [np.hypot(*gauges["side"].velocity[:, :2].T).max() for gauges in (here, elsewhere)]
     assert radii[1] > radii[0]
     assert crests[1] < crests[0]
-    # beside sides that end the rock, whose error that is, it is that of endless rock
-    ended = {f"boundary.{side}": {"type": "fixed"} for side in ("left", "right", "bottom")}
-    ended = with_changes(case, ended | {"boundary.top": {"type": "free"}})
-    gauges = dict.fromkeys(("side", "between", "diagonal"), still)
-    beside, alone = (solution.motions(each, gauges)["side"] for each in (ended, case))
-    np.testing.assert_array_equal(beside.velocity, alone.velocity)
     # a quarter beside mirror planes is another problem
     quarter = with_changes(case, {"boundary.left": {"type": "symmetry"}})
     with pytest.raises(CaseError, match=r'boundary\.left\.type: is "symmetry", must be a side beyond'):

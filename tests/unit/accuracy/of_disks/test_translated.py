@@ -10,14 +10,10 @@ from translated import translated
 from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.arrangements import _with_monitors, box_tables, boxes
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.exact import problem_of
 from dembound.accuracy.of_disks.exact.lamb import LambProblem
 from dembound.casefile import Case
-from dembound.disks.reflection.arrivals import arrivals_of
 from dembound.disks.scene import build
-from dembound.disks.trials import _reduced
-from dembound.errors import CaseError
 from dembound.kinds import checked, with_changes
 
 BY = np.array([-37.5, -11.25])
@@ -91,26 +87,6 @@ def test_exact_solutions_are_as_far_from_loads_and_hold_as_long(both) -> None:
         assert other.blast.surface == own.blast.surface + BY[1]
 
 
-def test_loads_near_a_side_have_no_exact_solution_wherever_they_are() -> None:
-    case = small(FORCE, changes={"load.hammer.position": [39.0, 30.0]})
-    for each in (case, translated(case, tuple(BY))):
-        with pytest.raises(CaseError, match=r"^load: is 1\.5 m from the right side"):
-            problem_of(build(each))
-
-
-def test_what_reaches_sides_and_how_stiff_they_are(both) -> None:
-    for side in ("left", "right", "bottom"):
-        own, other = (arrivals_of(case, side, build(case).ground) for case in both)
-        assert [each.name for each in own] == [each.name for each in other]
-        for one, another in zip(own, other, strict=True):
-            np.testing.assert_allclose(another.angles, one.angles, atol=1e-9)
-            np.testing.assert_allclose(another.shares, one.shares, atol=1e-12)
-    springs = [case.side("left").stiffest("left", case.packing.box) for case in both]
-    assert springs[0] == springs[1]
-    if both[0].side("left").type == "viscoelastic":
-        assert springs[0].distance == 20.0
-
-
 @pytest.mark.parametrize("height", [20.0, 50.0])
 def test_boxes_and_their_tables_are_in_the_ground_at_its_place(height) -> None:
     """Boxes deep in the ground, and boxes so near its surface that the disks reach up to it."""
@@ -136,21 +112,3 @@ def test_boxes_and_their_tables_are_in_the_ground_at_its_place(height) -> None:
     made = checked(with_changes(moved, tables | packing))
     assert made.box == moved.box
     assert build(made).outside is not None
-
-
-def test_monitors_under_waves_from_a_side_are_at_the_same_places_of_larger_disks() -> None:
-    driven = {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"type": "viscous"}}
-    case = small(LAMB | {"packing": LAMB["packing"] | {"size": [41.0, 30.0]}, "boundary": driven, "load": []})
-    own, other = (Companions(each, build(each), 1e-3, 1e5) for each in (case, translated(case, tuple(BY))))
-
-    for name, place in own.places_of(own.scene).items():
-        np.testing.assert_allclose(other.places_of(other.scene)[name], place + BY, rtol=0.0, atol=1e-12)
-
-
-def test_a_trial_of_fewer_bricks_has_the_stiffest_springs_of_the_whole_side() -> None:
-    case = small(FORCE | {"packing": FORCE["packing"] | {"size": [300.0, 200.0]}, "load": [], "monitor": []})
-    own, other = (_reduced(each)[0] for each in (case, translated(case, tuple(BY))))
-
-    assert own.packing.copies == other.packing.copies != case.packing.copies
-    assert own.side("left") == other.side("left")
-    assert own.side("left").distance == 20.0

@@ -38,12 +38,6 @@ def test_floors_are_those_of_all_holes() -> None:
     assert both.floors_of(both.hole[1:]).keys() == {"left"}
 
 
-def test_below_the_surface_of_the_ground_there_are_none() -> None:
-    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
-    origin = {"packing": GROUND["packing"] | {"origin": [0.0, 10.0]}}
-    assert small(SLOPE | origin | {"ground": {"size": [30.0, 40.0]}, "boundary": sides}).floors == {}
-
-
 def test_waves_that_need_a_half_space_are_refused() -> None:
     assert problems({"incident": {"type": "sv", "angle": 10.0, "wave": "w"}}) == [
         f"incident: what the surface sends back of the wave is not known, {WHY}"

@@ -20,28 +20,22 @@ ALL = {"left": 2, "right": 2, "bottom": 2}
 
 def case_of(boundary: dict, static: dict | None = None, **tables: object) -> DiskCase:
     static = {"boundary": HELD} if static is None else static
-    made = small(GRAINS | {"material": BREAKS, "load": [WEIGHT], "static": static, "boundary": boundary, **tables})
-    assert isinstance(made, DiskCase)
-    return made
+    return small(GRAINS | {"material": BREAKS, "load": [WEIGHT], "static": static, "boundary": boundary, **tables})
 
 
 @pytest.mark.parametrize(
     ("boundary", "expected"),
     [
         ({"bottom": BOTTOM, "left": FREE_FIELD, "right": FREE_FIELD}, ALL),
-        ({"bottom": BOTTOM, "left": VISCOUS, "right": VISCOUS}, ALL),
         ({"bottom": BOTTOM | {"intact": 3}, "left": VISCOUS | {"intact": 0}}, {"bottom": 3}),
         # other rock below belongs to the problem, but the ground stands on it
         ({"bottom": BOTTOM | {"rock": {"density": 2700.0, "p_wave_speed": 3e3, "s_wave_speed": 2e3}}}, {"bottom": 2}),
         # a base that shakes the ground; a platen that presses on a sample
         ({"bottom": {"type": "velocity", "wave_s": "pulse"}, "left": FREE_FIELD, "right": FREE_FIELD}, ALL),
-        ({"bottom": {"type": "velocity", "wave_s": "pulse"}}, {"bottom": 2}),
         ({"bottom": FIXED, "top": PLATEN}, {}),
-        ({"bottom": FIXED | {"intact": 1}, "top": PLATEN}, {"bottom": 1}),
         # a side that says it is artificial makes the body a part of the ground, one that says it is not never counts
         ({"bottom": FIXED | {"artificial": True}}, {"bottom": 2}),
         ({"bottom": FIXED | {"artificial": False}, "left": VISCOUS, "right": VISCOUS}, {"left": 2, "right": 2}),
-        ({"bottom": FIXED}, {}),
         # jaws hold a part of a side
         ({"bottom": FIXED | {"within": [1.0, 3.0]}, "left": VISCOUS}, {"left": 2}),
     ],
@@ -57,7 +51,6 @@ def test_sides_without_forces_at_rest_have_none() -> None:
     assert case_of(PERIODIC | {"bottom": BOTTOM}, {"boundary": {"bottom": FIXED}}).intact == {"bottom": 2}
     without = {key: value for key, value in GRAINS.items() if key != "static"}
     moving = small(without | {"material": BREAKS, "boundary": sides})
-    assert isinstance(moving, DiskCase)
     assert moving.intact == {}
 
 
@@ -75,7 +68,6 @@ def test_bonds_without_strength_need_none_but_load_factors_do() -> None:
     ("bottom", "expected"),
     [
         (BOTTOM, Bearing()),
-        (BOTTOM | {"bearing": False}, None),
         (BOTTOM | {"intact": 0}, None),
         (BOTTOM | {"intact": 0, "bearing": True}, Bearing()),
         (BOTTOM | {"bearing": {"alpha_n": 2.0}}, Bearing(alpha_n=2.0)),
@@ -98,10 +90,3 @@ def test_keys_of_other_sides_and_of_bars_are_refused() -> None:
     assert problems_of(f'{body}{run}[boundary.right]\ntype = "viscous"\nbearing = true') == [
         "boundary.right.bearing: is for the bottom of disks"
     ]
-    assert problems_of(f'{body}{run}[boundary.top]\ntype = "viscous"\nbearing = false') == []
-    bottom = f'{body}{run}[boundary.bottom]\ntype = "viscous"\nbearing = '
-    assert problems_of(f"{bottom}{{alpha_x = 1.0, alpha_n = -1.0}}") == [
-        "boundary.bottom.bearing.alpha_n: is -1.0, must be at least 0",
-        "boundary.bottom.bearing.alpha_x: unknown key; allowed: alpha_n, alpha_s (did you mean alpha_s?)",
-    ]
-    assert problems_of(f'{bottom}"yes"') == ['boundary.bottom.bearing: is "yes", must be true or false or a table']

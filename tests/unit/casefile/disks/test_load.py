@@ -3,7 +3,6 @@
 import pytest
 from small_cases import BODY, problems_of, rows
 
-from dembound.casefile.disks.load import Load
 from dembound.kinds import loads
 
 TAP = '[wave.tap]\ntype = "cubic_spline"\namplitude = 1.0\nperiod = 0.05\n'
@@ -17,34 +16,14 @@ def problems(extra: str) -> list[str]:
     return problems_of(BODY + TAP + extra)
 
 
-def test_complete_loads_say_what_acts_along_which_axes() -> None:
-    for keys, vector, axes in (
-        ({"force": (0.0, -4.5e5), "position": (5.0, 5.0)}, (0.0, -4.5e5), (1,)),
-        ({"force": (1.0, 2.0), "region": (0.0, 0.0, 1.0, 5.0), "wave": "tap"}, (1.0, 2.0), (0, 1)),
-        ({"acceleration": (3.0, 0.0)}, (3.0, 0.0), (0,)),
-    ):
-        complete = Load(name="a", **keys)
-        assert (complete.key in keys, complete.vector, complete.axes) == (True, vector, axes)
-
-
 MISTAKES = r"""
  | .force: is missing; give one of force, acceleration, pressure
 force = [1, 0] | .position: is missing; a force needs either position or region
-force = [1, 0]\nacceleration = [1, 0]\nposition = [1, 1] | .acceleration: is not allowed together with force
 acceleration = [0, 0]\nposition = [1, 1] | .acceleration: is zero along x and y, must not be
-acceleration = [1, 0]\nposition = [1, 1]\nregion = [0, 0, 1, 1] | .region: is not allowed together with position
-force = [1, 0]\nregion = [1, 0, 1, 5] | .region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1
-force = [1.0]\nposition = [1, 1] | .force: is [1.0], must be a list of 2 values, each a number (N/m)
-pressure = 1e6\nforce = [1, 0]\nhole = "h" | .pressure: is not allowed together with force
 pressure = 1e6 | .hole: is missing; a pressure needs the name of a hole, or sides
-pressure = 1e6\nhole = "h"\nposition = [1, 1] | .position: is not allowed together with pressure; give hole or sides
-pressure = 0\nhole = "h" | .pressure: is zero, must not be
 force = [1, 0]\nposition = [1, 1]\nhole = "h" | .hole: is for a pressure
-force = [1, 0]\nposition = [1, 1]\non = "bonds" | .on: is for a pressure
-pressure = 1e6\nhole = "h"\non = "ring" | .on: is "ring", must be one of "outline", "bonds"
 force = [1, 0]\nposition = [10.5, 1.0] | .position: is [10.5, 1.0], must be in the scene, [0, 0] to [10, 5] (m)
 force = [1, 0]\nregion = [0, 0, 6, 5.5] | .region: is [0.0, 0.0, 6.0, 5.5], must be in the scene, [0, 0] to [10, 5] (m)
-acceleration = [1, 0]\nwave = "top" | .wave: "top" is not a wave of this case; defined: tap
 """
 
 
@@ -87,15 +66,6 @@ def test_a_pressure_cannot_act_where_a_periodic_side_closes_the_wall() -> None:
         line = f'load[1, a].hole: "tunnel" reaches the periodic side {side}, which closes its wall otherwise'
         found = problems(sides + hole(CIRCLE.replace("3.0", str(centre))) + PRESSED)
         assert found == ([line] if side else [])
-
-
-def test_names_are_unique_and_serve_as_file_names() -> None:
-    gravity = "acceleration = [0.0, -9.81]"
-    assert problems(load(gravity) + load(gravity, name="b") + load(gravity)) == [
-        'load[3].name: "a" is taken by load[1]'
-    ]
-    (line,) = problems(load(gravity, name="a/b"))
-    assert line.startswith('load[1, a/b].name: is "a/b", must be made of the letters')
 
 
 def test_a_held_direction_cannot_be_loaded() -> None:

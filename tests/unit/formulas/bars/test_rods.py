@@ -1,4 +1,4 @@
-"""Waves in rods at single frequencies, beside closed forms."""
+"""Waves in rods at single frequencies, beside closed forms; transforms of signals and back, over a damped window."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from estimated_bars import BAR, RANGES, WALL
 from small_cases import small
 
 from dembound.bar.scene import build_bar
-from dembound.formulas.bars.rods import Rods
+from dembound.formulas.bars.rods import Rods, Window
 
 S = 40.0 + 2j * np.pi * np.array([0.0, 300.0, 2000.0, 9000.0])
 SPEED, IMPEDANCE = 2740.0, 2620.0 * 2740.0
@@ -48,3 +48,43 @@ def test_an_interface_transmits_by_the_impedances() -> None:
     np.testing.assert_allclose(velocity[:, 0], through, rtol=1e-10)
     np.testing.assert_allclose(velocity[:, 1], through * np.exp(-0.2 * S / 1370.0), rtol=1e-10)
     np.testing.assert_allclose(stress[:, 0], -softer * through, rtol=1e-10)
+
+
+def hump(time: np.ndarray) -> np.ndarray:
+    return np.where((time > 0.1) & (time < 0.4), np.sin(np.pi * (time - 0.1) / 0.3) ** 4, 0.0)
+
+
+def test_a_history_comes_back_late_by_a_delay_and_hardly_at_the_beginning_if_after_the_end() -> None:
+    window = Window.up_to(1.0, 0.002)
+
+    late = window.history(window.transform(hump) * np.exp(-0.25 * window.s))
+
+    np.testing.assert_allclose(window.time[[0, -1]], [0.0, 1.0])
+    np.testing.assert_allclose(late, hump(window.time - 0.25), atol=1e-6)
+    # prescribed velocities are sampled later
+    np.testing.assert_allclose(window.history(window.transform(hump, 0.1)), hump(window.time + 0.1), atol=1e-12)
+    other = Window.up_to(0.99, 0.01)
+    finer = other.finer(8)
+    assert finer.samples * finer.step == other.samples * other.step
+    assert finer.time[-1] == other.time[-1]
+    np.testing.assert_allclose(finer.s[:5], other.s[:5])
+    # it is damped by 1e-6 once it has passed the whole window, of twice the length of the history
+    window = Window.up_to(1.0, 0.002)
+    length = window.samples * window.step
+
+    late = window.history(window.transform(hump) * np.exp(-length * window.s))
+
+    np.testing.assert_allclose(late, 1e-6 * hump(window.time), atol=1e-10)
+
+
+def test_a_lasting_signal_does_not_jump_at_the_end() -> None:
+    # without fading out beyond the history its jump would ring there
+    window = Window.up_to(1.0, 0.002)
+    signal = window.transform(
+        lambda time: np.clip(time / 0.2, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(time / 0.2, 0.0, 1.0))
+    )
+
+    late = window.history(signal * np.exp(-0.1234 * window.s))
+
+    shifted = np.clip((window.time - 0.1234) / 0.2, 0.0, 1.0)
+    np.testing.assert_allclose(late, shifted**2 * (3.0 - 2.0 * shifted), atol=1e-4)

@@ -21,7 +21,7 @@ def scene(radius: float) -> DiskScene:
     """Disks beside a force at (2, 1) m."""
     push = {"name": "push", "force": [1e5, 0.0], "region": [1.5, 0.5, 2.5, 1.5], "wave": "push"}
     packing = {"pattern": "A", "size": [10.0, 3.0], "radius": radius}
-    return build(small(PUSHED, changes={"packing": packing, "boundary": {}, "load": [push]}))  # type: ignore[arg-type]
+    return build(small(PUSHED, changes={"packing": packing, "boundary": {}, "load": [push]}))
 
 
 def recorded(place: tuple[float, float], move: tuple[float, float]) -> History:
@@ -60,17 +60,7 @@ def test_half_of_motion_at_45_degrees_is_along_the_ray() -> None:
 
 
 def test_there_is_none_without_a_force_and_a_finite_one_at_it() -> None:
-    driven = build(small(PUSHED))  # type: ignore[arg-type]
+    driven = build(small(PUSHED))
     assert errors_near_loads(driven, recorded((7.0, 1.0), (1.0, 0.0))) == {"velocity": 0.0, "displacement": 0.0}
     at_it = errors_near_loads(scene(0.25), recorded((2.25, 1.0), (1.0, 0.0)))["velocity"]
     assert at_it == pytest.approx(near(0.5, 0.5) * 0.5**2, rel=1e-3)
-
-
-def test_the_nearest_copy_of_a_force_counts() -> None:
-    """Across periodic sides the force at 2 m is 3 m to the right of a monitor at 9 m of 10 m."""
-    periodic = {"boundary": {"left": {"type": "periodic"}, "right": {"type": "periodic"}}}
-    push = {"name": "push", "force": [1e5, 0.0], "region": [1.5, 0.5, 2.5, 1.5], "wave": "push"}
-    packing = {"pattern": "A", "size": [10.0, 3.0], "radius": 0.25}
-    wrapped = build(small(PUSHED, changes={"packing": packing, "load": [push], **periodic}))  # type: ignore[arg-type]
-    found = errors_near_loads(wrapped, recorded((9.0, 1.0), (1.0, 0.0)))["velocity"]  # type: ignore[arg-type]
-    assert found == pytest.approx(near(0.5, 3.0), rel=1e-3)

@@ -55,23 +55,12 @@ def test_what_only_layers_have_is_missing_in_a_sample() -> None:
     assert sample(changes=RANDOM | two | {"material.density": 2000.0}).material["density"] == 2000.0
 
 
-def test_an_elastic_material_with_strengths_gets_a_law_that_breaks() -> None:
-    elastic = RANDOM | {"material.law": "elastic", "output.load_factor": True}
-    assert loads(sample(changes=elastic).text()).material.law == "linearpbond"
-
-
 def test_lattices_have_whole_cells_and_one_sample() -> None:
     lattice = sample(changes=BROKEN, width=3.2)
 
     assert (lattice.width, lattice.height) == (3.0, 6.5)
     with pytest.raises(CaseError, match="--seeds: all samples of this pattern are the same"):
         lattice.text(1)
-
-
-def test_a_packing_under_stress_comes_to_rest_first() -> None:
-    locked = RANDOM | {"material.locked_in": 1e6, "static.ratio": 1e-3}
-    assert sample(changes=locked).elastic == sample().elastic
-    assert loads(sample(changes=locked).text()).static is not None
 
 
 def test_doubts_before_any_test() -> None:

@@ -10,7 +10,7 @@ from recorded import contents
 from small_cases import PUSHED, small
 
 import dembound
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError
 from dembound.results.recording import LoadingCurve
 from dembound.studies.laboratory import study
 from dembound.studies.sweep import perform
@@ -46,8 +46,8 @@ def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> 
     assert contents(records[0]) == contents(records[1])
     assert (again.folder / "test.csv").read_bytes() == (whole.folder / "test.csv").read_bytes()
     assert len(json.loads(records[0].with_name("summary.json").read_text())["resumed"]) == 1
-    assert 0.0 < min(seen) <= whole.curves["seed=0"].time[-1]
     # its time and its checkpoint are of a run under way
+    assert 0.0 < min(seen) <= whole.curves["seed=0"].time[-1]
     assert not perform.times_in(again.folder)
     assert {path.name for path in records[0].parent.iterdir()} == {"run.h5", "summary.json", "paraview"}
 
@@ -59,37 +59,15 @@ def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> 
         whole.statistic("strenght")
 
 
-def test_only_the_first_seed_has_a_file_for_paraview_and_failures_are_raised(tmp_path, monkeypatch) -> None:
-    packing = {"pattern": "B", "size": [6.0, 6.0], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5}
-    case = small(LATTICE, "rock", {"packing": packing, "material.emod": 1e9})
-    tasks = []
-
-    def failed(task):
-        tasks.append(task)
-        return perform.Outcome(task.name, failure="no memory")
-
-    monkeypatch.setattr("dembound.studies.sweep.workers.perform", failed)
-    with pytest.raises(RunError, match="seed=0: no memory"):
-        dembound.laboratory_test(case, "ucs", tmp_path, seeds=3)
-
-    assert ['paraview = "vtkhdf"' in task.text for task in tasks] == [True, False, False]
-    assert all('paraview = "none"' in task.text for task in tasks[1:])
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         ({"test": "ucx"}, "test: is ucx, must be one of ucs, tension, brazilian, biaxial"),
-        ({"ends": "rough"}, "--ends: is rough, must be one of smooth, grips"),
-        ({"seeds": 0}, "--seeds: is 0, must be 1 or more"),
         (
             {"test": "biaxial", "pressures": [1e6, -1.0]},
             "--pressures: is 1e.06,-1, must be different",
         ),
-        ({"test": "biaxial", "pressures": [float("nan")]}, "--pressures: is nan, must be different finite"),
-        ({"shares": [0.5]}, "--shares: is 0.5, must be two shares of the peak"),
         ({"rate": 0.0}, "--rate: is 0, must be more than 0"),
-        ({"damp": 1.0}, "material.damp: is 1"),
     ],
 )
 def test_what_a_test_cannot_be_made_of(words, message, tmp_path) -> None:
@@ -115,5 +93,4 @@ def test_what_makes_curves_doubtful() -> None:
     assert warned(*[intact] * 5) == ["no peak in s0, s1, s2 and 2 more: no bond broke"]
     (level,) = warned(replace(intact, crack_time=time[:1]))
     assert level == "no peak in s0: the stress was still rising or level at the end"
-    (fast,) = warned(past, limit=0.001)
-    assert fast.startswith("strain rate 0.01 1/s is above 0.001 1/s")
+    assert [line[:36] for line in warned(past, limit=0.001)] == ["strain rate 0.01 1/s is above 0.001 "]

@@ -11,7 +11,7 @@ from dembound.errors import CaseError
 from dembound.plot.sweep import plot_sweep
 from dembound.studies.sweep.members import ENERGY, Member
 from dembound.studies.sweep.perform import Outcome
-from dembound.studies.sweep.tables import Swept, write_tables
+from dembound.studies.sweep.tables import Swept, statistic, write_tables
 
 SIDE = {"type": "free"}
 
@@ -79,12 +79,6 @@ def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
     (mean,) = (bars.lines[0] for bars in panel.containers)
     assert mean.get_ydata().tolist() == [2.0]  # where there is an interval
     assert figure.get_suptitle() == "β and $safety$"
-    # groups with numbers are placed by their value
-    write_tables(Swept(swept.case, "run", swept.members[:3], swept.outcomes[:3]), tmp_path)
-    (panel,) = plot_sweep(tmp_path / "sweep.h5").axes
-    assert panel.get_xlabel() == "run.safety"
-    (mean,) = (line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata()) == 2)
-    assert (mean.get_xdata().tolist(), mean.get_ydata().tolist()) == ([0.5, 0.9], [2.0, 5.0])
 
 
 def test_requested_quantities_are_shown(swept) -> None:
@@ -95,3 +89,16 @@ def test_requested_quantities_are_shown(swept) -> None:
     assert shown("energy.kinetic") == ["energy.kinetic"]
     with pytest.raises(CaseError, match=r"--quantity: is energy, must be one of monitors.end.peak_velocity, energy.k"):
         shown("energy")
+
+
+def test_the_interval_is_students() -> None:
+    """The squared deviations of 2, 4, 4, 4, 5, 5, 7, 9 add to 32; t(0.975) of 7 degrees is 2.364624 (tables)."""
+    found = statistic({}, "x", [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0])
+    assert found.count == 8
+    assert found.mean == 5.0
+    assert found.spread == pytest.approx(np.sqrt(32.0 / 7.0), rel=1e-14)
+    assert found.interval == pytest.approx(2.364624 * np.sqrt(32.0 / 7.0 / 8.0), rel=5e-7)  # of seven digits
+    assert found.ends == (found.mean - found.interval, found.mean + found.interval)
+    one = statistic({}, "x", [3.0])
+    assert (one.mean, one.count) == (3.0, 1)
+    assert np.isnan([one.spread, one.interval, *one.ends]).all()

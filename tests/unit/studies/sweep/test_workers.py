@@ -82,7 +82,7 @@ def test_the_end_of_processes_is_not_waited_for_and_others_are_left_alone(tmp_pa
 def test_a_cluster_that_does_not_answer_is_bad_input(monkeypatch) -> None:
     pytest.importorskip("distributed", reason="Dask is not installed (dembound[cluster])")
     monkeypatch.setattr("dembound.studies.sweep.workers.CONNECTING", 0.1)
-    for address in ("tcp://127.0.0.1:1", "nowhere"):
+    for address in ("tcp://127.0.0.1:1",):
         with pytest.raises(CaseError, match=f"--scheduler: {address} does not answer"), cluster(address):
             pass
 

@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks.exact import lamb as module
 from dembound.accuracy.of_disks.exact import write_exact
@@ -12,33 +13,16 @@ from dembound.kinds import loads, with_changes
 
 ROCK = Solid(2500.0, 300.0, 300.0 / np.sqrt(2.0))
 
-CASE = """
-[packing]
-pattern = "A"
-size = [10.0, 5.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 300.0
-fric = 0.5
-[wave.pulse]
-type = "cubic_spline"
-amplitude = 1.0
-period = 0.1
-[[load]]
-name = "hammer"
-force = [0.0, -1000.0]
-position = [4.75, 4.75]
-wave = "pulse"
-[[monitor]]
-name = "before"
-position = [2.75, 4.75]
-[[monitor]]
-name = "behind"
-position = [6.75, 4.75]
-[run]
-duration = 0.2
-"""
+CASE = tomli_w.dumps(
+    {
+        "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
+        "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+        "wave": {"pulse": {"type": "cubic_spline", "amplitude": 1.0, "period": 0.1}},
+        "load": [{"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}],
+        "monitor": [{"name": "before", "position": [2.75, 4.75]}, {"name": "behind", "position": [6.75, 4.75]}],
+        "run": {"duration": 0.2},
+    }
+)
 
 
 def histories(path, case):
@@ -60,41 +44,13 @@ def test_a_load_on_the_open_surface_moves_both_sides_alike(tmp_path):
     np.testing.assert_allclose(before, behind * [-1.0, 1.0, 1.0], atol=1e-12 * down.max())
 
 
-def test_a_mirror_plane_doubles_the_load_and_stands_at_the_side(tmp_path):
-    case = with_changes(loads(CASE), {"boundary.left.type": "symmetry", "load": [{**HAMMER, "position": [0.25, 4.75]}]})
-    time, near, _ = histories(tmp_path / "run.h5", case)
-    pulse = case.wave["pulse"].velocity
-    out, down = buried_displacement(time, 2.75, 0.25, lambda t: 2000.0 * pulse(t), ROCK)
-    np.testing.assert_allclose(near, np.column_stack([out, -down, 0.0 * time]), atol=1e-12 * down.max())
-
-
-def test_a_side_that_is_far_or_goes_on_periodically_makes_no_quarter_space(tmp_path):
-    # monitors 2 m to both sides of the load; the left side stands at a quarter of the way to them
-    near = {"monitor": [{"name": "behind", "position": [2.75, 4.75]}], "load": [{**HAMMER, "position": [0.75, 4.75]}]}
-    sides = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right")}
-    for name, changes in (("far", near), ("periodic", {**sides, "load": [{**HAMMER, "position": [0.25, 4.75]}]})):
-        write_exact(with_changes(loads(CASE), changes), tmp_path / name / "run.h5")
-        assert (tmp_path / name / "run.h5").exists()
-
-
-def test_twins_in_a_free_field_column_are_no_monitors(tmp_path):
-    # the column stands 9 m from the load, whose monitors are 1.5 m away, and the right side 1.25 m
-    places = {"load": [{**HAMMER, "position": [8.75, 4.75]}], "monitor": [{"name": "near", "position": [7.25, 4.75]}]}
-    case = with_changes(loads(CASE), {"boundary.left.type": "free_field", **places})
-    write_exact(case, tmp_path / "run.h5")
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert list(file["histories"]) == ["near"]
-
-
 HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}
 
 
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"load": []}, "one vertical force"),
         ({"load": [{**HAMMER, "force": [10.0, -1000.0]}]}, "one vertical force"),
-        ({"load": [{**HAMMER, "position": [4.75, 2.0]}]}, "load.hammer.position: must be on the top"),
         ({"monitor": [{"name": "deep", "position": [2.0, 1.0]}]}, "monitor.deep.position: must be on the top"),
         ({"boundary.top": {"type": "viscous"}}, 'boundary.top.type: is "viscous", must be "free"'),
         ({"load": [{**HAMMER, "position": [0.75, 4.75]}]}, "load: is 0.75 m from the left side and 6 m from a monitor"),
@@ -112,8 +68,6 @@ def test_other_problems_are_refused_and_leave_nothing(tmp_path, changes, message
     ("step", "at", "refused"),
     [
         (0.02, 0.0773, True),
-        (0.005, 0.0773, False),  # so small that the quadrature may try
-        (0.5, 0.1932, True),
         (0.5, 0.1934, False),  # from 0.19333 s on, what sets out comes to the monitors, 2 m away, after the end
     ],
 )

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks import exact as module
 from dembound.accuracy.of_disks.exact import exact_motions
@@ -12,47 +13,18 @@ from dembound.errors import CaseError
 from dembound.exact import Solid, cavity_motion
 from dembound.kinds import loads, with_changes
 
-CASE = """
-[packing]
-pattern = "A"
-size = [20.0, 20.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 300.0
-fric = 0.5
-[boundary.left]
-type = "viscous"
-[boundary.right]
-type = "viscous"
-[boundary.bottom]
-type = "viscous"
-[boundary.top]
-type = "viscous"
-[wave.pulse]
-type = "cosine"
-amplitude = 2.0
-period = 0.05
-start = 0.01
-[[hole]]
-name = "hole"
-type = "circle"
-centre = [10.0, 10.0]
-radius = 2.0
-[[load]]
-name = "blast"
-hole = "hole"
-pressure = 1e6
-wave = "pulse"
-[[monitor]]
-name = "right"
-position = [13.25, 10.25]
-[[monitor]]
-name = "below"
-position = [8.25, 6.25]
-[run]
-duration = 0.15
-"""
+CASE = tomli_w.dumps(
+    {
+        "packing": {"pattern": "A", "size": [20.0, 20.0], "radius": 0.25},
+        "material": {"density": 2500.0, "p_wave_speed": 300.0, "fric": 0.5},
+        "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")},
+        "wave": {"pulse": {"type": "cosine", "amplitude": 2.0, "period": 0.05, "start": 0.01}},
+        "hole": [{"name": "hole", "type": "circle", "centre": [10.0, 10.0], "radius": 2.0}],
+        "load": [{"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}],
+        "monitor": [{"name": "right", "position": [13.25, 10.25]}, {"name": "below", "position": [8.25, 6.25]}],
+        "run": {"duration": 0.15},
+    }
+)
 
 SOLID = Solid(2500.0, 300.0, 300.0 / math.sqrt(2.0))
 BLAST = {"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}
@@ -100,7 +72,6 @@ def test_below_a_free_surface_it_is_garvins_problem_or_the_cavitys_until_the_ech
 
 STEADY = {"name": "gas", "hole": "hole", "pressure": 1e5}
 TOO_SHALLOW = {"hole.hole.radius": 2.9, "hole.hole.centre": [10.0, 11.0], **OPEN}
-ELLIPSE = {"name": "hole", "type": "ellipse", "centre": [10.0, 10.0], "semi_axes": [2.0, 3.0]}
 CUT = {"name": "hole", "type": "circle", "centre": [10.0, 18.5], "radius": 2.0}
 
 
@@ -108,20 +79,14 @@ CUT = {"name": "hole", "type": "circle", "centre": [10.0, 18.5], "radius": 2.0}
     ("changes", "name", "message"),
     [
         (TOO_SHALLOW, "garvin", r"hole\.hole\.radius: is 2.9, must be at most 0\.25 of its depth \(9 m\)"),
-        ({}, "garvin", "free surface above the hole"),
         ({}, "lamb", "--problem: the case has no load of lamb"),
         ({}, "mindlin", "--problem: mindlin is none of lamb, cavity, garvin, scattering"),
         ({"boundary.left": {"type": "symmetry"}}, None, r'boundary\.left\.type: is "symmetry", must be a side beyond'),
-        ({"boundary.bottom": {"type": "free"}}, None, r'boundary\.bottom\.type: is "free", must be a side beyond'),
         ({"material.fric": 0.0}, None, "anisotropic"),
         ({"material.law": "linearpbond"}, None, r'material\.law: is "linearpbond", must have no history'),
-        ({"motion.held": ["rotation"]}, None, r"motion\.held: is \['rotation'\], must be empty"),
-        ({"hole": [ELLIPSE]}, None, "solution is that of one circle"),
         ({"hole": [CUT]}, None, r"hole\[1, hole\]: reaches boundary\.top; the solution is that of a closed circle"),
         ({"load": [BLAST, STEADY]}, None, r"load\[2, gas\]: is steady, and begins with the run"),
-        ({"load": [STEADY]}, None, "Lamb's problem has one vertical force"),
         ({"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}, None, "that of one pressure on the wall of"),
-        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, None, r"has a jump at 0\.05 s"),
     ],
 )
 def test_other_problems_are_refused(changes, name, message) -> None:

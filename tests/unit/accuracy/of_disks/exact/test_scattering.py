@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import tomli_w
 
 from dembound.accuracy.of_disks import exact as module
 from dembound.accuracy.of_disks.exact import exact_motions
@@ -12,69 +13,36 @@ from dembound.errors import CaseError
 from dembound.exact import PlaneWave, Solid, scattered_motion
 from dembound.kinds import loads, with_changes
 
-CASE = """
-[ground]
-size = [100.0, 120.0]
-[packing]
-pattern = "A"
-size = [20.0, 20.0]
-origin = [40.0, 40.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-fric = 0.5
-[outside]
-element = 10.0
-[boundary.left]
-type = "outside"
-[boundary.right]
-type = "outside"
-[boundary.bottom]
-type = "outside"
-[boundary.top]
-type = "outside"
-[incident]
-type = "sv"
-angle = 30.0
-wave = "pulse"
-point = [50.0, 20.0]
-[wave.pulse]
-type = "cubic_spline"
-amplitude = 0.5
-period = 0.1
-[[hole]]
-name = "tunnel"
-type = "circle"
-centre = [50.0, 50.0]
-radius = 5.0
-[[monitor]]
-name = "left"
-position = [44.5, 50.5]
-[[monitor]]
-name = "above"
-position = [50.5, 56.5]
-[run]
-duration = 0.3
-"""
+CASE = tomli_w.dumps(
+    {
+        "ground": {"size": [100.0, 120.0]},
+        "packing": {"pattern": "A", "size": [20.0, 20.0], "origin": [40.0, 40.0], "radius": 0.5},
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+        "outside": {"element": 10.0},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+        "incident": {"type": "sv", "angle": 30.0, "wave": "pulse", "point": [50.0, 20.0]},
+        "wave": {"pulse": {"type": "cubic_spline", "amplitude": 0.5, "period": 0.1}},
+        "hole": [{"name": "tunnel", "type": "circle", "centre": [50.0, 50.0], "radius": 5.0}],
+        "monitor": [{"name": "left", "position": [44.5, 50.5]}, {"name": "above", "position": [50.5, 56.5]}],
+        "run": {"duration": 0.3},
+    }
+)
 
 SOLID = Solid(2500.0, 1000.0, 1000.0 / math.sqrt(2.0))
 
 
-@pytest.mark.parametrize(("kind", "angle"), [("sv", 30.0), pytest.param("p", -20.0, marks=pytest.mark.slow)])
-def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, angle, monkeypatch) -> None:
+def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(monkeypatch) -> None:
     """Direction, polarisation, and the delay from the point to the hole."""
     monkeypatch.setattr(module, "SAMPLES", 300)  # times
-    case = with_changes(loads(CASE), {"incident.type": kind, "incident.angle": angle, "run.duration": 0.16})
+    angle, case = math.radians(30.0), with_changes(loads(CASE), {"run.duration": 0.16})
     problem, motions = exact_motions(build(case))
     assert problem.name == "scattering"
-    speed = SOLID.p_wave_speed if kind == "p" else SOLID.s_wave_speed
-    delay = 30.0 * math.cos(math.radians(angle)) / speed
-    wave = PlaneWave(kind, math.radians(90.0 - angle), case.wave["pulse"].velocity)
+    delay = 30.0 * math.cos(angle) / SOLID.s_wave_speed
+    wave = PlaneWave("sv", 0.5 * math.pi - angle, case.wave["pulse"].velocity)
     for name, place in (("left", [-5.5, 0.5]), ("above", [0.5, 6.5])):
         motion = motions[name]
         # what the surface sends back needs 120 m − 20 m up and 120 m − 57 m down, at 1000 m/s or less
-        early = motion.time < (100.0 + 60.0) * math.cos(math.radians(angle)) / 1000.0
+        early = motion.time < (100.0 + 60.0) * math.cos(angle) / 1000.0
         expected = scattered_motion(motion.time[early] - delay, np.array([place]), wave, 5.0, SOLID)
         assert np.abs(expected.velocity).max() > 0.3
         for found, moved in ((motion.displacement, expected.displacement), (motion.velocity, expected.velocity)):
@@ -105,7 +73,6 @@ def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo(monkeypa
     [
         ({"hole": [{"name": "h", "type": "rectangle", "corners": [48.0, 48.0, 52.0, 52.0]}]}, "that of one circle"),
         ({"load": [{"name": "blow", "force": [1.0, 0.0], "position": [45.5, 45.5], "wave": "pulse"}]}, "alone"),
-        ({"wave.pulse": {"type": "constant", "amplitude": 1.0}}, r"wave\.pulse: has a jump at"),
     ],
 )
 def test_other_problems_are_refused(changes, message) -> None:

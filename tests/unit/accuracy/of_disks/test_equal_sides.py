@@ -56,9 +56,10 @@ def with_side(scene: DiskScene, side: str, table: Boundary) -> DiskScene:
     return with_boundaries(scene, replace(scene.case, boundary={side: table}))
 
 
-@pytest.mark.parametrize("side", ["right", "top"])
-@pytest.mark.parametrize("per_disk", [False, True])
-@pytest.mark.parametrize("springs", [(0.0, 0.0), (3e7, 7e7)])
+@pytest.mark.parametrize(
+    ("side", "per_disk", "springs"),
+    [("right", False, (0.0, 0.0)), ("right", True, (3e7, 7e7)), ("top", False, (3e7, 7e7))],
+)
 def test_dampers_and_springs_are_those_per_metre_along_each_axis(scene, side, per_disk, springs) -> None:
     given = with_side(scene, side, Own(dampers=(2e6, 5e6), springs=springs, per_disk=per_disk))
     plain = with_plain_sides(given)

@@ -29,12 +29,11 @@ def scene(frequency: float, *, outside: Tables | None = None, **changes: object)
         "load": [push],
         "run": {"duration": 40.0 / frequency},
     }
-    return build(small(tables | changes))  # type: ignore[arg-type, operator]
+    return build(small(tables | changes))
 
 
 def velocity(made: DiskScene, place: tuple[float, float] = (10.0, 14.0)) -> float:
     found = expected_errors(made, {"here": np.array(place)})
-    assert found is not None
     return found["here"][0]
 
 
@@ -68,7 +67,6 @@ def test_layers_return_a_part_of_r0_and_are_too_steep_for_what_lasts() -> None:
     def displacement(layers: int, reflection: float) -> float:
         made = scene(1.0, outside={"layers": layers, "reflection": reflection, "element": 5.0}, **pulse)
         found = expected_errors(made, {"here": np.array(MIDDLE)})
-        assert found is not None
         return found["here"][1]
 
     assert displacement(6, 0.01) == pytest.approx(of.KEPT * 0.01, rel=0.01)
@@ -79,7 +77,7 @@ def test_layers_return_a_part_of_r0_and_are_too_steep_for_what_lasts() -> None:
 
 def test_of_waves_that_come_through_it_a_part_leaves_through_it_again_and_places_are_alike() -> None:
     entering = {"load": [], "boundary": {side: {"type": "outside"} for side in SIDES[:3]}}
-    entering["boundary"]["bottom"] = {"type": "outside", "wave_s": "w"}  # type: ignore[call-overload, index]
+    entering["boundary"]["bottom"] = {"type": "outside", "wave_s": "w"}
     made = scene(20.0, **entering)
     k = 2.0 * math.pi * 20.0 / SPEED
     ties = of.TIES * (1.0 / 16.0 + 0.1 / 8.0 / math.sqrt(2.0)) * k**2
@@ -102,25 +100,6 @@ def test_beside_a_blast_elements_and_ties_err_in_its_static_field_where_it_is() 
     assert velocity(passed) == pytest.approx(2e-2 * 1.5 * k * 3.0 * 0.3, rel=0.02)
 
 
-def test_on_a_free_surface_beside_a_load_on_it_there_is_more() -> None:
-    """Down to an eighth of the waves' length, 4.4 m of 35 m, of places and loads; elsewhere the ways alone count."""
-    above = {"boundary": {side: {"type": "outside"} for side in SIDES[:3]}}
-    on_it = [{"name": "push", "force": [1e6, 0.0], "position": [10.1, 19.1], "wave": "w"}]
-    shallow, buried = scene(20.0, load=on_it, **above), scene(20.0, **above)
-    plain = velocity(scene(20.0, load=on_it))
-    assert velocity(shallow, (14.1, 15.9)) / velocity(shallow, (14.1, 15.2)) == pytest.approx(of.SURFACE, rel=0.1)
-    assert velocity(shallow, (10.1, 19.9)) < of.SURFACE * plain  # and one side less returns
-    assert velocity(buried, (10.1, 19.9)) < velocity(scene(20.0), (10.1, 19.9))
-
-
-def test_random_packings_add_to_displacements_alone() -> None:
-    packing = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
-    found = expected_errors(scene(2.0, packing=packing | {"seed": 1}), {"here": np.array(MIDDLE)})
-    assert found is not None
-    assert found["here"][1] == pytest.approx(of.UNEVEN, rel=0.05)
-    assert found["here"][0] < 0.5 * of.UNEVEN
-
-
 def test_nothing_is_known_without_a_continuum_or_of_waves_that_jump() -> None:
     assert expected_errors(scene(20.0, wave={"w": {"type": "constant", "amplitude": 1.0}}), {}) is None
     assert expected_errors(scene(20.0, boundary={}), {}) is None
@@ -132,7 +111,6 @@ def test_what_random_bricks_would_scatter_is_missing_beside_a_continuum(monkeypa
     packing = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
     for frequency in (20.0, 200.0):
         made = scene(frequency, packing=packing)
-        assert made.outside is not None
         k = 2.0 * math.pi * min(frequency / slowest(made.outside.body.medium), 1.0 / 10.0)
         both = velocity(made)
         monkeypatch.setattr(of, "BRICKS", 0.0)

@@ -34,14 +34,3 @@ def test_a_history_that_jumps_at_its_ends_is_warned_of(bar, tmp_path, velocities
     assert said is None or said in found[0]
     if velocities[0] == 0.0:  # an end after the run is none of it
         assert list(wave_use_warnings(bar({"wave.pulse": wave, "run.duration": 0.004}))) == []
-
-
-@pytest.mark.parametrize(("header", "said"), [("t(s) v(m/s)", None), ("t(s) v(mm/s)", "scale = 0.001")])
-def test_a_file_with_another_unit_is_warned_of_where_it_is_used(bar, tmp_path, header: str, said: str | None) -> None:
-    path = tmp_path / "wave.txt"
-    path.write_text(f"{header}\n0 0\n0.001 1\n0.002 0\n")
-    found = list(wave_use_warnings(bar({"wave.pulse": {"type": "file", "path": str(path)}, "run.duration": 0.01})))
-    assert len(found) == (said is not None)
-    assert (
-        said is None or f"wave.pulse: its header says mm/s, its values are read as m/s; for those write {said}" in found
-    )

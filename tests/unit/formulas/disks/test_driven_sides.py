@@ -14,8 +14,7 @@ from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
 
 
-@pytest.mark.parametrize("alpha", [4.0, 0.5])
-@pytest.mark.parametrize("half_mass", [False, True])
+@pytest.mark.parametrize(("alpha", "half_mass"), [(4.0, False), (0.5, True)])
 def test_it_is_that_of_a_layer_on_the_plane_of_the_side(alpha: float, half_mass: bool) -> None:
     """Its RMS within a fifth, and its shape: the second order, and dispersion, are a tenth of these errors."""
     rock = {"density": 1900.0, "p_wave_speed": 300.0 * alpha, "s_wave_speed": 212.132 * alpha}
