@@ -66,13 +66,6 @@ def test_one_disk_is_pulled_back_by_its_share_of_the_shear_modulus(sides) -> Non
         assert np.abs(found.sum(axis=1)).max() < 1e-12 * np.abs(found).max()
 
 
-def test_twins_are_those_of_the_body_and_the_column_has_no_springs() -> None:
-    body = scene(FREE_FIELD)
-    assert body.bearing.node.min() >= body.column_count
-    assert np.array_equal(body.bearing.twin, body.seam.twin[body.bearing.node])
-    assert scene(PERIODIC).bearing.twin.max() == -1
-
-
 def test_very_stiff_springs_shorten_the_step() -> None:
     """ω_max² is that of the stiffest disk, K/m, where its spring exceeds all contacts."""
     body = scene(FREE_FIELD, alpha_n=1e5)

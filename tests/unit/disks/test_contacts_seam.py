@@ -83,19 +83,6 @@ def test_a_search_moves_the_ends_and_keeps_them_right(beside: DiskSystem) -> Non
     check_ends(beside)
 
 
-def test_a_broken_pair_across_the_seam_stays_listed_however_far_apart(scene) -> None:
-    beside = DiskSystem(scene(), STEP)
-    column = beside.contacts["column"]
-    column.arrays.state[seam_ends(beside) >> 1] = TENSION
-    apart = np.zeros((3, beside.scene.count))
-    apart[0] = 5.0 * beside.scene.positions[:, 0]
-    for contacts in beside.contacts.values():
-        contacts.search(apart)
-
-    check_ends(beside)
-    assert set(column.arrays.state[seam_ends(beside) >> 1]) == {TENSION}
-
-
 def keyed(ground: DiskScene, width: float, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> list[tuple]:
     """Pairs (i, j, periods between), the same whichever way round they are listed."""
     images = np.rint((vectors - (ground.positions[second] - ground.positions[first]))[:, 0] / width).astype(int)

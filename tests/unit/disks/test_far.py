@@ -8,7 +8,7 @@ from small_cases import small
 
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.watches import STEPS, FarDisks, far_warnings
+from dembound.disks.watches import STEPS, FarDisks
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
@@ -100,12 +100,3 @@ def test_others_pass_them_without_touching(fallen) -> None:
     here[:2, other] += (falling.scene.positions + here[:2].T)[gone] - (falling.scene.positions + here[:2].T)[other]
     pairs.search(here)
     assert not (np.transpose(pairs.pairs) == gone).any()
-
-
-def test_they_are_warned_of_once() -> None:
-    assert list(far_warnings(None)) == []
-    (said,) = far_warnings({"disks": 1135, "retired": False, "time": 1.5})
-    assert said.startswith("run.far: of 1,135 disks each has fallen below the base")
-    assert 'run.far = "retire"' in said
-    (said,) = far_warnings({"disks": 2, "retired": True, "time": 1.5})
-    assert "retire" not in said

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, small
 
-from dembound.disks.pressure import shares_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
-from dembound.holes.outline import EllipseOutline, PolygonOutline
 from dembound.kinds import with_changes
 from dembound.kinds.disks.facts import disk_facts
 
@@ -71,33 +69,6 @@ def test_a_pressure_in_a_closed_hole_is_in_balance_and_pushes_outwards(packing: 
     # ∫ p x·n ds is twice p times the area; the disks lie up to two diameters of 0.6 m behind the outline
     area = {"circle": np.pi * 2.3**2, "ellipse": np.pi * 3.4 * 1.3, "rectangle": 4.2 * 3.8}.get(name, 15.75)
     assert area < np.sum(forces[:, :2] * away) / (2.0 * P) < area + 0.5 * 1.2 * 20.0
-
-
-def test_shares_of_a_circle_are_arcs_between_the_middles_of_neighbours() -> None:
-    circle = EllipseOutline((1.0, 2.0), (3.0, 3.0))
-    angles = np.array([0.2, 5.9, 1.0, 3.0])
-    begin, end = shares_of(circle, (0.0, circle.period), angles)
-    arcs = (circle.nearest(end) - circle.nearest(begin)) % circle.period
-
-    np.testing.assert_allclose(
-        circle.nearest(begin), [0.5 * (0.2 + 5.9 - 2.0 * np.pi) % (2.0 * np.pi), 4.45, 0.6, 2.0], atol=1e-12
-    )
-    np.testing.assert_allclose(arcs.sum(), 2.0 * np.pi, rtol=1e-14)
-    np.testing.assert_allclose(np.hypot(*(end - (1.0, 2.0)).T), 3.0, rtol=1e-14)
-
-
-def test_shares_of_an_open_wall_go_on_to_its_ends() -> None:
-    trench = PolygonOutline(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 9.0], [0.0, 9.0]]))
-    ((_, length),) = parts = trench.within((-5.0, -5.0, 9.0, 2.0))
-    begin, end = shares_of(
-        trench, parts[0], trench.nearest(np.array([[5.0, 1.5], [2.0, -1.0], [-1.0, 1.0], [-1.0, 2.5]]))
-    )
-
-    # down the left wall, along the bottom, up the right wall; the last disk lies above the end
-    assert length == pytest.approx(8.0)
-    np.testing.assert_allclose(begin[[3, 2, 1]], [[0.0, 2.0], [0.0, 1.5], [0.5, 0.0]], atol=1e-12)
-    np.testing.assert_allclose(end[[1, 0]], [[3.75, 0.0], [4.0, 2.0]], atol=1e-12)
-    np.testing.assert_allclose(begin[0], end[1], atol=1e-12)
 
 
 def test_in_a_lattice_every_cut_bond_has_p_times_d() -> None:

@@ -66,15 +66,6 @@ PULL = {"name": "pull", "force": [2.0, 3.0], "position": [9.9, 0.9]}
 WEIGHT = {"name": "weight", "acceleration": [0.0, -9.81]}
 
 
-def test_steady_loads_add_up(bar) -> None:
-    scene = loaded(bar, PULL, WEIGHT)
-    expected = np.zeros((3, scene.count))
-    expected[1] = -9.81 * scene.mass
-    expected[:2, int(np.argmax(scene.assembly.positions.sum(axis=1)))] += [2.0, 3.0]
-
-    assert np.array_equal(scene.steady_load, expected)
-
-
 def test_a_load_with_a_wave_follows_it_and_is_not_steady(bar) -> None:
     scene = loaded(bar, {**PULL, "force": [0.0, 3.0], "wave": "pulse"})
     node = int(np.argmax(scene.assembly.positions.sum(axis=1)))
@@ -159,12 +150,6 @@ def test_a_force_on_the_continuum_that_cannot_be_is_refused(bar, place: dict, li
         with pytest.raises(CaseError) as error:
             _ = loaded(bar, {"name": "house", "force": [0.0, -1.0], **place, **wave}, **SURROUNDED).steady_load
         assert error.value.problems == [f"load.house{line}"]
-
-
-def test_a_region_of_the_body_that_ends_at_the_continuum_is_on_particles(bar) -> None:
-    scene = loaded(bar, on_the_ground([6.0, 3.5, 8.0, 4.0]), **SURROUNDED)
-
-    assert np.flatnonzero(scene.steady_load[1]).max() < scene.disk_count
 
 
 def test_a_force_on_the_continuum_follows_its_wave(bar) -> None:

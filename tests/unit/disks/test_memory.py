@@ -39,15 +39,6 @@ def test_sizes_are_known_before_the_scene_is_built(scene) -> None:
     assert expected.in_rows == sizes.in_rows
 
 
-def test_the_lines_of_supports_are_known_before_the_scene_is_built(bar) -> None:
-    sides = {"left": {"type": "fixed"}, "bottom": {"type": "viscous"}, "right": {"type": "viscous"}}
-    scene = build(bar({**FREE, "packing": PATTERNS["A"], "boundary": sides, "motion.held": []}))
-
-    # three components of fixed disks and of none more of viscous ones, whose rotation is free
-    supported = scene.sizes.supported
-    assert supported <= SceneSizes.expected(scene.case).supported <= 1.6 * supported
-
-
 @pytest.mark.parametrize("in_rows", [True, False])
 def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
     monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
@@ -84,19 +75,6 @@ def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows, more) -> N
 
     # numbers of listed pairs differ between bricks
     assert pairs_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
-
-
-def test_what_is_recorded_counts(bar) -> None:
-    def need(**changes) -> float:
-        alone = {"output.pictures": False, "run.checkpoint": 0.0}
-        case = bar({**FREE, "packing": {**RANDOM, "bricks": [4000, 100]}, **alone, **changes})
-        return expected_bytes(case)
-
-    assert need(**{"output.snapshots": 1}) == need(**{"output.snapshots": 9}) > need(**{"output.snapshots": 0})
-    assert need(**{"output.snapshots": 0, "run.checkpoint": 300.0}) > need(**{"output.snapshots": 0})
-    assert need(**{"output.stress": True}) > need()
-    assert need(**{"output.peaks": True}) > need()
-    assert need(**{"material.law": "linearpbond"}) > 1.4 * need()
 
 
 def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:

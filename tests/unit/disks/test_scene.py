@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.disks.scene import build, with_boundaries
+from dembound.disks.scene import build
 from dembound.disks.sides import boundary_medium
 from dembound.errors import CaseError, PackingError
 
@@ -11,16 +11,6 @@ RANDOM = {
     "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
     "motion.held": [],
 }
-
-
-def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
-    scene = build(bar({"boundary.bottom": {"type": "fixed"}, "motion.held": ["y", "rotation"]}))
-    supports = scene.supports
-
-    assert set(supports.component) == {0}
-    assert supports.prescribed.sum() == 20
-    # the upper disk of each end has the dashpot ρc_pD, the lower is fixed
-    assert sorted(supports.damping[supports.damping > 0.0]) == [2500.0 * 1000.0 * 0.5] * 2
 
 
 def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
@@ -34,17 +24,6 @@ def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
         np.testing.assert_allclose(chosen, 20 * [2.0 * stiffness], rtol=1e-14)
 
 
-def test_half_masses_follow_the_boundaries(bar) -> None:
-    whole = build(bar())
-    half = build(bar({"boundary.right.half_mass": True}))
-    right = half.edges["right"].nodes
-
-    assert (half.mass / whole.mass)[right].tolist() == [0.5, 0.5]
-    assert (half.inertia / whole.inertia)[right].tolist() == [0.5, 0.5]
-    assert np.delete(half.mass, right).tolist() == np.delete(whole.mass, right).tolist()
-    assert with_boundaries(half, whole.case).mass.tolist() == whole.mass.tolist()
-
-
 def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
     moduli = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9}
     media = []
@@ -56,16 +35,6 @@ def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -
     # the lattice with μ = 0: c_p² = (E_c + Ē_c)/ρ, c_s = c_p/2; a solve with one unknown
     assert media[2].p_wave_speed == pytest.approx(1000.0, rel=1e-12)
     assert media[2].s_wave_speed == pytest.approx(500.0, rel=1e-12)
-
-
-def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
-    packing = {**RANDOM["packing"], "bond_gap": 0.02}
-    scene = build(
-        bar({**RANDOM, "packing": packing, "material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}})
-    )
-
-    assert (scene.ground.brick.gaps > 0.0).any()
-    assert all(np.isfinite(rows.constants).all() for rows in scene.rows)
 
 
 TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks.scene import DiskScene, build, column_alone, with_boundaries
+from dembound.disks.scene import DiskScene, build, column_alone
 from dembound.errors import CaseError
 
 FREE_FIELD = {"type": "free_field"}
@@ -41,40 +41,6 @@ def test_each_monitor_has_a_twin_in_the_column(ground) -> None:
         assert scene.assembly.positions[twin, 1] == place[1]
 
 
-def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
-    scene = build(ground(**{"boundary.bottom.half_mass": True}))
-    seam, whole = scene.seam, len(scene.ground.brick.pairs)
-    halves = scene.edges["bottom"].nodes
-    low = scene.assembly.positions[np.repeat(seam.node, seam.contact_counts), 1] == 0.25
-
-    assert 0 < np.count_nonzero(low) < len(low)
-    assert np.array_equal(seam.contact_type >= whole, low)
-    along = np.isin(scene.assembly.pairs, halves).all(axis=1)
-    assert np.array_equal(scene.assembly.contact_type >= whole, along)
-    # column and body alike: a row of 8 disks has 7 contacts, the column's one disk touches itself
-    assert np.count_nonzero(along) == 8
-    assert set(scene.mass[halves]) == {0.5 * scene.ground.mass[0]}
-
-
-CHANGES = {
-    "half cells": {"boundary.bottom.half_mass": True},
-    "no column": {"boundary.left": {"type": "viscous"}, "boundary.right": {"type": "viscous"}},
-    "a column on one side": {"boundary.left": {"type": "viscous"}},
-}
-
-
-@pytest.mark.parametrize("change", CHANGES)
-def test_boundaries_that_are_built_into_the_body_build_it_anew(ground, change: str) -> None:
-    plain, changed = ground(), ground(**CHANGES[change])
-    for before, after in ((plain, changed), (changed, plain)):
-        found, expected = with_boundaries(build(before), after), build(after)
-        assert np.array_equal(found.mass, expected.mass)
-        assert np.array_equal(found.assembly.contact_type, expected.assembly.contact_type)
-        assert (found.seam is None) == (expected.seam is None)
-        if expected.seam is not None:
-            assert np.array_equal(found.seam.node, expected.seam.node)
-
-
 @pytest.mark.parametrize("pattern", PACKINGS)
 def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str) -> None:
     width, height = PACKINGS[pattern]["size"]
@@ -91,13 +57,6 @@ def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str
     for side, left, right in (("left", -1.0, 0.1 * width), ("right", 0.9 * width, width + 1.0)):
         with pytest.raises(CaseError, match=rf"hole\[1, niche\]: reaches boundary.{side}, where the free field has no"):
             hollow(left, right)
-
-
-def test_a_hole_may_reach_a_side_without_a_free_field(ground) -> None:
-    niche = {"name": "niche", "type": "rectangle", "corners": [-1.0, 1.0, 1.0, 2.0]}
-    scene = build(ground(boundary={"right": FREE_FIELD, "bottom": BASE}, hole=[niche]))
-
-    assert len(scene.edges["left"].nodes) == 4
 
 
 EVERYWHERE = [

@@ -1,16 +1,13 @@
 """A scene of a box of disks in the ground: its column, its continua, and what is refused."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
 from dembound.disks.rest.settled import settling_keys
-from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.surroundings.mesh import ElementSizes, box_of
-from dembound.disks.surroundings.settings import least_element
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 
@@ -42,16 +39,6 @@ def scene(*changes: dict) -> DiskScene:
 @pytest.fixture(scope="module")
 def shaken() -> DiskScene:
     return scene(WAVE)
-
-
-def test_there_is_a_column_if_the_ground_moves_by_itself() -> None:
-    sides = ("left", "right", "bottom", "top")
-    assert case().column_sides == ()
-    assert case(**WAVE).column_sides == sides
-    assert case(**WEIGHT).column_sides == sides
-    blow = {"name": "blow", "force": [1e3, 0.0], "position": [20.0, 12.0], "wave": "w"}
-    assert case(load=[blow]).column_sides == ()
-    assert case(load=[{"name": "all", "acceleration": [1.0, 0.0], "wave": "w"}]).column_sides == sides
 
 
 def test_the_column_is_as_high_as_the_ground(shaken: DiskScene) -> None:
@@ -92,23 +79,6 @@ def test_between_box_and_surface_there_is_room_for_an_element() -> None:
     up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
     lattice["packing"]["origin"] = [14.0, 18.0]
     assert scene(lattice, {"boundary": up_to_it}).outside.count > 0
-
-
-def test_sizes_of_elements_round_a_narrow_column() -> None:
-    made = case(**{"packing.radius": 0.5})
-    ground = ground_of(made)
-    body = build(made).assembly
-
-    def sizes(width: float, periodic: bool) -> ElementSizes:
-        strip = replace(body, size=np.array([width, 30.0]), extent=np.array([width, 30.0]))
-        return ElementSizes.of(made, ground, strip, ("bottom",), (periodic, False))
-
-    assert (sizes(36.0, True).narrow, sizes(36.0, True).element) == ((False, False), (6.0, 6.0))
-    assert (sizes(12.0, True).narrow, sizes(12.0, True).element) == ((True, False), (12.0, 6.0))
-    least = least_element(made, ground.brick.mean_diameter)
-    assert sizes(1.0, True).box.tolist() == [least, 30.0]
-    assert sizes(1.0, True).element == (least, 6.0)
-    assert not any(sizes(1.0, False).narrow)
 
 
 def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:

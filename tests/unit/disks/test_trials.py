@@ -126,12 +126,3 @@ def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, ob
     assert not trial.scene.steady_load.any()
     assert len(trial.scene.supports.drive) == 0
     assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)
-
-
-def test_a_wave_at_an_angle_is_left_out() -> None:
-    wave = {"wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}}
-    case = small(SURROUNDED | wave | {"incident": {"type": "p", "angle": 20.0, "wave": "pulse"}})
-    found, words = trials(case)
-    assert found[0].scene.ground_waves is None
-    assert found[0].limit == pytest.approx(step_limit(build(case)), rel=1e-6)
-    assert "no loads and waves" in words

@@ -8,9 +8,7 @@ from small_cases import small
 
 from dembound.casefile import Case
 from dembound.disks.scene import build
-from dembound.disks.watches import WARNS, Turns, turn_warnings
-from dembound.kernels.contacts import INTACT
-from dembound.kinds.disks.kind import Disks
+from dembound.disks.watches import Turns, turn_warnings
 from dembound.motion.simulation import Simulation
 
 FREE: dict[str, Any] = {
@@ -70,28 +68,3 @@ def test_a_body_that_spins_under_the_elastic_law_grows_as_said() -> None:
     again = Turns()
     again.restore(tracker.saved_arrays())
     np.testing.assert_array_equal(again.found, tracker.found)
-
-
-def test_broken_bonds_follow_the_motion_and_are_not_counted() -> None:
-    run = at_rest(free(**KEPT))
-    pairs = run.system.contacts["body"].arrays
-    pairs.state[:] = INTACT + 1
-    run.state.displacement = np.stack([-0.3 * run.scene.positions[:, 1], 0.3 * run.scene.positions[:, 0], np.zeros(16)])
-    assert Turns().describe(run)["turn"] == 0.0
-
-
-def test_only_laws_that_keep_directions_are_watched() -> None:
-    def names(**material: Any) -> set[str]:
-        return {tracker.name for tracker in Disks().trackers(at_rest(free(**material)))}
-
-    assert Turns.name in names()
-    assert Turns.name in names(**KEPT)
-    assert Turns.name not in names(law="linearpbond")
-
-
-def test_it_is_warned_of_from_a_tenth_on() -> None:
-    found = {"turn": WARNS, "time": 1.0, "position": [1.0, 2.0]}
-    assert not [*turn_warnings(None, "elastic", has_history=False), *turn_warnings(found, "elastic", has_history=False)]
-    (said,) = turn_warnings(found | {"turn": 0.11}, "linearpbond", has_history=True)
-    assert said.startswith('material.geometry: is "reference", so')
-    assert said.endswith('take "updated", which turns with the motion')

@@ -3,7 +3,6 @@
 import pytest
 
 from dembound.disks.contacts.pairs import BREAK_TIME, BREAK_X, BREAK_Y, first_break
-from dembound.kinds import with_changes
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 
@@ -42,8 +41,3 @@ def test_it_is_the_first_step_and_the_mean_place_inside_a_part_of_the_scene(bar)
     assert found[BREAK_TIME].value == pytest.approx(cracks.step[rest].min() * run.time_step)
     assert found[BREAK_X].value < end
     assert first_break(run_of(bar(BONDS)), (0.0, 0.0, 0.3, 1.0)) == {}
-
-
-def test_a_run_without_broken_bonds_has_none(bar) -> None:
-    assert first_break(run_of(bar())) == {}
-    assert first_break(run_of(with_changes(bar(BONDS), {"material.pb_ten": 1e9}))) == {}

@@ -36,10 +36,3 @@ def test_forces_are_those_of_the_contacts_one_by_one(bar, in_order, changes: dic
     # some ten sums of products of size k
     stiffest = scene.ground.stiffness.normal.max()
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=40.0 * np.finfo(float).eps * stiffest)
-
-
-def test_one_brick_alone_keeps_the_order_of_its_disks(bar) -> None:
-    scene = build(bar({**BARE, "packing": {**DENSE, "size": [4.0, 5.0]}}))
-
-    assert scene.layout.is_plain
-    assert not lanes_of(scene)

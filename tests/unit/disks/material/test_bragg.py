@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dembound.continuum.sizing import Signal, energies
-from dembound.disks.material import packing_waves
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import Coupling, couplings
-from dembound.waves.cosine import Cosine
 
 
 def frequencies(ground: PackedMaterial, k: np.ndarray) -> np.ndarray:
@@ -79,23 +76,3 @@ def test_a_band_has_the_energy_that_coupled_waves_send_back() -> None:
         speed = 2.0 * math.pi * 30.0 / 0.2
         band = float(np.sum(np.abs(ratio) ** 2)) * 1e-5 * speed / (2.0 * math.pi)
         assert found.band(length) == pytest.approx(band, rel=5e-3)
-
-
-def test_work_is_bounded_and_the_rest_is_named(dense: PackedMaterial, monkeypatch) -> None:
-    """The columns of all solves times the disks stay below the bound, for waves along both axes."""
-    signals = [Signal(Cosine(type="cosine", amplitude=1.0, period=0.004), is_force=True)]
-    columns = []
-    inner = packing_waves._matrices
-    monkeypatch.setattr(packing_waves, "_matrices", lambda *given: columns.append(4 * len(given[1])) or inner(*given))
-    whole = packing_waves.sent_back(dense, signals, (30.0, 30.0), (0, 1))
-    asked, count = sum(columns), len(dense.brick.radii)
-    columns.clear()
-    monkeypatch.setattr(packing_waves, "WORK", 0.4 * asked * count)
-    part = packing_waves.sent_back(dense, signals, (30.0, 30.0), (0, 1))
-
-    assert 0 < sum(columns) * count < packing_waves.WORK
-    assert part.share < whole.share
-    assert part.highest < whole.highest
-    assert part.above > whole.above
-    frequencies, energy = energies(signals[0])
-    assert part.above == pytest.approx(energy[frequencies > part.highest].sum() / energy.sum())

@@ -6,7 +6,7 @@ from small_cases import small
 
 from dembound import api
 from dembound.disks.reflection import compare_types
-from dembound.disks.reflection.arrivals import amplitudes, returned_range, signal_for
+from dembound.disks.reflection.arrivals import amplitudes, signal_for
 from dembound.spectra import fourier_spectrum
 
 LENGTH, SPEED, PERIOD = 100.0, 1000.0, 0.04
@@ -59,17 +59,3 @@ def test_springs_return_in_a_run_what_is_computed_and_their_formula_says(tmp_pat
     np.testing.assert_allclose(amplitudes(signal, np.array([1.0, 50.0])), [1.0, 0.0], atol=0.06)
     usual = next(iter(compare_types(case, "right", [SPRINGS], [0.0])[0].values())).frequencies
     assert usual[-1] == pytest.approx(case.wave["pulse"].highest_frequency())
-
-
-@pytest.mark.parametrize(
-    ("shares", "words"),
-    [
-        ([1e-2, 1e-4, 1e-6, 1e-6], "below 10 Hz"),
-        ([1e-2, 1e-6, 1e-6, 1e-2], "below 3.16 Hz and above 316 Hz"),
-        ([0.0, 1e-6, 1e-6, 1e-2], "above 316 Hz"),
-        ([1e-2, 1.0, 1.0, 1.0], "everywhere"),
-        ([0.0, 0.0, 1e-6, 1e-5], "nowhere"),
-    ],
-)
-def test_where_a_side_returns_more_than_one_per_cent_of_the_amplitude(shares, words) -> None:
-    assert returned_range(np.array([1.0, 10.0, 100.0, 1000.0]), np.array(shares)) == words

@@ -25,11 +25,3 @@ def test_a_side_reflects_by_layer() -> None:
         np.testing.assert_allclose(returned("left", layer), clay * slower**2, rtol=0.02)
     np.testing.assert_allclose(returned("left", "rock"), returned("left", None, 1.0), rtol=1e-6)
     np.testing.assert_allclose(returned("bottom", None), returned("bottom", None, 1.0), rtol=1e-6)
-
-
-def test_waves_that_layers_turn_arrive_from_all_directions() -> None:
-    case = small(SOIL | OPEN)
-    (arrival,) = measure_side(case, "left", [0.0], [10.0], layer="clay").arrivals
-    assert arrival.name == "waves from all directions"
-    (arrival,) = measure_side(case.uniform_at(1.0), "left", [0.0], [10.0]).arrivals
-    assert arrival.name == "waves from load hit"

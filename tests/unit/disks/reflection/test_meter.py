@@ -87,23 +87,6 @@ def test_sides_that_take_nothing_send_everything_back(side, kind) -> None:
         assert found.converted[wave][0, 1] > 0.05
 
 
-def test_left_and_right_and_upright_sides_of_a_lattice_are_alike() -> None:
-    right = measured(LATTICE, "right", 1e-4, [40.0], [0.0, 35.0, 70.0])
-    for side in ("left", "bottom", "top"):
-        other = measured(
-            LATTICE, side, 1e-4, [40.0], [0.0, 35.0, 70.0], changes={"boundary": {side: {"type": "viscous"}}}
-        )
-        for kind in ("p", "s"):
-            np.testing.assert_allclose(other.same[kind], right.same[kind], rtol=1e-7, atol=1e-12)
-            np.testing.assert_allclose(other.converted[kind], right.converted[kind], rtol=1e-7, atol=1e-12)
-
-
-def test_held_motion_leaves_the_waves_that_can_run() -> None:
-    found = measured(LATTICE, "right", 1e-4, [20.0], [0.0, 30.0], changes={"motion.held": ["y", "rotation"]})
-    assert found.kinds == ("p",)
-    assert found.angles.tolist() == [0.0]
-
-
 def test_a_side_is_measured_beside_matched_factors_and_a_continuum() -> None:
     """At the homogenised factors of long waves nothing comes back: amplitudes of the order qa/4 of whole masses."""
     case = small(GRAINS, changes={"boundary.right.beta_p": 0.5, "wave.pulse.period": 0.5})

@@ -8,7 +8,6 @@ from dembound.disks.rest.settled import Blocks, Uniformity, block_stress
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.side_forces import packing_pieces
 from dembound.disks.stepping.system import DiskSystem
-from dembound.packings.cut import BEYOND
 
 K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m."""
@@ -69,20 +68,6 @@ def test_the_packing_has_the_stress_on_the_whole(body, pattern: str) -> None:
     asked = np.array([-3e6, 2e6, 1e6])
     stress = Blocks.of(scene).stress(packing_pieces(scene, asked), scene.positions)
     np.testing.assert_allclose(stress.mean(axis=(0, 1)), asked, rtol=0.0, atol=1e-9 * 3e6)
-
-
-def test_blocks_move_and_grow_with_the_sides(body) -> None:
-    scene = body(14.0, 14.0)
-    moved = strained(scene, -0.01, 0.02) + np.array([[3.0], [-2.0], [0.0]])
-    as_built, now = Blocks.of(scene), Blocks.of(scene, moved)
-    for axis, strain in enumerate((-0.01, 0.02)):
-        shift = (3.0, -2.0)[axis]
-        low, high = (scene.positions[scene.edges[side].nodes, axis].mean() for side in BEYOND[axis])
-        # sides are where their disks are, a radius inside: strain over 14 m is that over 13.5 m
-        stretch = 1.0 + strain * (high - low) / 14.0
-        assert now.size[axis] == pytest.approx(as_built.size[axis] * stretch, rel=1e-12)
-        begin = as_built.low[axis] * stretch + shift + strain * low
-        assert now.low[axis] == pytest.approx(begin, rel=1e-12)
 
 
 def test_the_worst_block_is_reported_with_its_place_and_holes_apart(body) -> None:

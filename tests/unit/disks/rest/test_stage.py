@@ -126,15 +126,6 @@ def damping(ground: DiskScene, nodes: np.ndarray) -> np.ndarray:
     return found[:2, nodes]
 
 
-def test_what_is_carried_is_the_base_s_and_not_the_dashpots(bar) -> None:
-    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
-    settled = settle(scene(bar, **{**STANDING, "boundary": boundary}))
-
-    # two disks of the body and one of the column stand on the base, each under three more
-    assert settled.mean_reaction == pytest.approx(4.0 * MASS * G, rel=1e-6)
-    assert settled.mean_residual < 1e-7 * settled.mean_reaction
-
-
 def test_beside_a_free_field_the_column_settles_first_and_alone(bar) -> None:
     ground = packed_ground(bar, None, **NICHE)
     looks: list[tuple[int, float]] = []
@@ -185,22 +176,6 @@ def test_what_a_static_stage_cannot_have_is_refused_before_any_step(changes, sai
     tables = {key: table for key, table in SURROUNDED.items() if key != "outside" or "ground" in changes}
     with pytest.raises(CaseError, match=said):
         require_stages(build(small(tables, changes=changes)))
-
-
-def test_with_an_excavation_the_column_is_that_of_before(bar) -> None:
-    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
-    shaft = {"name": "shaft", "type": "rectangle", "corners": [1.0, 1.0, 2.0, 2.0], "stage": "after"}
-    lower = {"packing.size": [3.0, 2.0], "boundary": boundary, "static.ratio": 1e-6}
-    settled = settle(scene(bar, **{**STANDING, **LAWS["with a history"], **lower, "hole": [shaft]}))
-
-    assert settled.column is None
-    assert settled.before is not None
-    assert settled.before.column is not None
-    before, after = settled.before.start.contacts, settled.start.contacts
-    assert list(before) == list(after) == ["column", "body"]
-    # the column has lost nothing, the body some
-    assert np.array_equal(after["column"].of("first"), before["column"].of("first"))
-    assert len(after["body"].live) < len(before["body"].live)
 
 
 @pytest.mark.parametrize("ratio", [None, 1e-4])

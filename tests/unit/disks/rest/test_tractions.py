@@ -89,13 +89,3 @@ def test_tractions_neither_move_nor_turn_a_body(random_body, changes: dict) -> N
         # sums of some fifty terms, of arms of 20 m
         assert abs(torque(scene, force, where)) < 20.0 * 1e-14 * scale
         assert np.abs(force[:2].sum(axis=1)).max() < 1e-14 * scale
-
-
-@pytest.mark.parametrize("changes", STILL.values(), ids=STILL)
-def test_tractions_stay_where_the_law_stays(random_body, changes: dict) -> None:
-    scene = random_body(**changes)
-    tractions = Tractions(scene, STRESS)
-    before = tractions.forces(np.zeros((3, scene.count)))
-
-    assert np.array_equal(tractions.forces(turned(scene, 0.3)), before)
-    assert np.array_equal(tractions.forces(moved(scene)), before)

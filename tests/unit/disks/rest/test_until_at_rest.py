@@ -104,22 +104,6 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pair
     assert f"came to an unbalanced force ratio of {ratios[-1]:.3g} in" in str(caught.value)
 
 
-def test_what_dashpots_alone_hold_lacks_its_force(bar) -> None:
-    # as `LOOSE` between free-field sides: a disk of the right one is pulled off, which only its dashpots slow
-    static = {"ratio": 1e-8, "max_steps": LOADED, "boundary": {"bottom": FIXED}}
-    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
-    pull = {"name": "pull", "force": [4.0, 0.0], "position": [1.75, 1.75]}
-    body = scene(bar, load=[pull], static=static, boundary=boundary, **LOOSE)
-    node = int(np.flatnonzero(body.steady_load[0])[0])
-    assert node in body.edges["right"].nodes
-    with pytest.raises(StalledError) as caught:
-        settle(body)
-
-    unbalanced = np.zeros((body.count, 2))
-    unbalanced[node] = [4.0, 0.0]
-    assert np.array_equal(caught.value.unbalanced, unbalanced)
-
-
 def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None:
     static = {"ratio": 1e-8, "max_steps": LOOK // 2, "stress": [-3e6, 2e6, 1e6]}
     body = scene(bar, packing=DENSE, static=static)

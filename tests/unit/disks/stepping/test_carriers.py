@@ -30,19 +30,6 @@ def none_of(body: DiskScene) -> np.ndarray:
     return np.zeros(body.count, dtype=np.bool_)
 
 
-def test_at_corners_each_side_has_the_force_along_its_normal(scene) -> None:
-    body = scene()
-    carriers, force = carriers_of(body), shaken(body, 1.0)
-    assert [each.side for each in carriers] == list(body.edges)
-    total = sum(on_side(each, force) for each in carriers)
-    at_sides = np.unique(np.concatenate([each.nodes for each in carriers]))
-    np.testing.assert_allclose(total[:, at_sides], force[:, at_sides], rtol=1e-15)
-    corner = int(np.argmin(body.positions.sum(axis=1)))
-    left, bottom = (on_side(each, force)[:, corner] for each in carriers if each.side in ("left", "bottom"))
-    assert left.tolist() == [force[0, corner], 0.0, 0.5 * force[2, corner]]
-    assert bottom.tolist() == [0.0, force[1, corner], 0.5 * force[2, corner]]
-
-
 def isolate(system: DiskSystem, particles: np.ndarray) -> None:
     """Break all bonds of some particles in all parts."""
     for part in system.parts:

@@ -7,13 +7,11 @@ from disk_systems import (
     BONDED,
     ELASTIC,
     EPS,
-    FREE_FIELD,
     SIDES,
     STEP,
     WITH_HISTORY,
     begun,
     locked_in_forces,
-    settled,
     shaken,
 )
 from small_cases import small
@@ -43,28 +41,6 @@ def test_what_is_locked_in_pushes_a_body_as_built_under_either_law(loose, bounda
     assert {part.law_name for part in system.parts} == {state.laws[0][0]}
     assert system.balance is None
     assert not any(part.stops_at_breaks for part in system.parts)
-
-
-@pytest.mark.parametrize("has_history", [False, True])
-def test_nothing_balances_a_body_that_settles(loose, has_history: bool) -> None:
-    body = loose(**WITH_HISTORY)
-    start, load = settled(body, has_history=has_history), shaken(body, 1.0, 5)
-    system = DiskSystem(body, STEP, start, settling=True, load=load)
-    state = begun(system, start.displacement)
-
-    assert system.balance is None
-    assert state.laws == [(BONDED if has_history else ELASTIC, 0)]
-    # the elastic law does not know what is locked in
-    assert np.array_equal(system.steady, load if has_history else load + locked_in_forces(body))
-    assert not any(part.stops_at_breaks for part in system.parts)
-
-
-def test_beside_a_free_field_a_body_that_settles_begins_under_the_elastic_law(loose) -> None:
-    body = loose(**WITH_HISTORY, boundary=FREE_FIELD)
-    system = DiskSystem(body, STEP, settling=True)
-
-    assert begun(system).laws == [(ELASTIC, 0)]
-    assert np.array_equal(system.steady, locked_in_forces(body))
 
 
 @pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)

@@ -9,10 +9,8 @@ from small_cases import PUSHED, SPALLING, small
 from dembound.accuracy.runner import measure
 from dembound.disks.stepping.load_factor import LOAD_FACTOR, load_factor_in_words
 from dembound.errors import CaseError
-from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.tables import Limits
-from dembound.kinds.disks.kind import Disks
-from dembound.laws.linearpbond import LIMITS, limit_in_words, limit_lines
+from dembound.laws.linearpbond import LIMITS, limit_lines
 from dembound.running import Progress, plan, resume_case, run_case
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)
@@ -43,29 +41,6 @@ def test_lines_are_the_limits_of_the_law():
     for strain in np.random.default_rng(2).standard_normal((5, 3)) * 1e-3:
         room = allowed[0] - slopes[0] @ strain
         np.testing.assert_allclose(room, reached(CLOSED, STRENGTH, *strain), rtol=1e-12)
-
-
-def test_columns_of_limits_are_those_of_each_pair():
-    constants, limits = np.array([CLOSED] * 2), [STRENGTH, STRENGTH._replace(friction=0.1, tension=1e5, tan_fa=0.2)]
-    both = limit_lines(constants, in_columns(np.array([each[:4] for each in limits]), STRENGTH.geometry))
-    each = [limit_lines(constants[:1], one) for one in limits]
-    for found, expected in zip(both, zip(*each, strict=True), strict=True):
-        np.testing.assert_array_equal(found, np.vstack(expected))
-
-
-def test_pairs_have_only_the_limits_of_what_they_have():
-    gap = [*CLOSED[:3], 0.49, *CLOSED[4:]]
-    bare = [*CLOSED[:5], 1e9, 5e8, 0.0, 0.0, 0.0, AREA, SECTION]
-    bonds = [*CLOSED[:5], 0.0, 0.0, *CLOSED[7:]]
-    slopes, allowed = limit_lines(np.array([gap, bare, bonds]), STRENGTH)
-    np.testing.assert_array_equal(
-        np.isfinite(allowed),
-        [[True, False, False, *[True] * 4], [*[True] * 3, *[False] * 4], [False, False, False, *[True] * 4]],
-    )
-    # the gap of 10 mm closes at a stretch of −10 mm
-    assert allowed[0, 0] / slopes[0, 0, 0] == pytest.approx(-0.01)
-    assert slopes[0, 0, 0] < 0.0
-    assert [limit_in_words(0, np.array(each)) for each in (gap, bare)] == ["closes", "opens"]
 
 
 STATIC = PUSHED | {
@@ -157,10 +132,3 @@ SETTLE = r"output.load_factor: needs a \[static\] stage, .* under load\[1, weigh
 def test_where_there_is_no_factor_it_is_refused(tables, changes, problem):
     with pytest.raises(CaseError, match=problem):
         small(tables, "refused", changes)
-
-
-def test_rows_that_move_identically_are_all_compared():
-    tables = PUSHED | {"boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}}}
-    one, whole = (small(tables, "rows", {"output.load_factor": asked}) for asked in (False, True))
-    assert Disks().reduced(Disks().build(one)).scene.disk_count < 100
-    assert Disks().reduced(Disks().build(whole)).scene.disk_count == 100

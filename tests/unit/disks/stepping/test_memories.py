@@ -10,7 +10,6 @@ from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping import damped_ground
-from dembound.errors import RunError
 from dembound.kernels.elastic import contact_forces
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
@@ -88,18 +87,3 @@ def test_the_ledger_closes(bar, boundary: str, layer: list) -> None:
 
     assert max(abs(entry.error) for entry in entries) < 1e-11 * entries[0].kinetic
     assert entries[-1].damping > 0.1 * entries[0].kinetic
-
-
-def test_energy_from_memories_that_grow_stops_the_run(bar) -> None:
-    """Mechanisms of negative weight add energy, which the ledger counts as negative damping without an error."""
-    scene = build(
-        bar({**BODY, "boundary": {}, "packing": GRAINS | {"size": [8.0, 8.0]}, "material.quality_factor": 5.0})
-    )
-    simulation = Simulation(scene, choose_step(scene)[0])
-    memories = simulation.system.parts[0].memories
-    memories.arrays.factors[:, 1] *= -1.0
-    simulation.track(Ledger(simulation, 50))
-    simulation.state.velocity = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count))
-
-    with pytest.raises(RunError, match="has gained"):
-        simulation.run(3000)

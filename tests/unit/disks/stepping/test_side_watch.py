@@ -57,10 +57,6 @@ def test_all_forces_together_count_where_the_side_moves_as_a_whole(bar) -> None:
         watched.look(4, moved=60.0, borne=-9.0)
 
 
-def test_nothing_is_said_before_energy_came_in(bar) -> None:
-    assert Watched(bar).look(1, moved=1e3, energy=0.0)["work"] is None
-
-
 def test_the_largest_turn_is_that_of_a_disk_that_bears_a_force(bar) -> None:
     watched = Watched(bar)
     watched.look(1, turned=-0.3)

@@ -81,24 +81,6 @@ def test_energy_that_comes_with_another_law_is_written_down(loose, balanced: boo
     assert not np.delete(state.work, 4, axis=1).any()
 
 
-@pytest.mark.parametrize(
-    ("changes", "balanced", "turns"), [({}, True, True), (REFERENCE, True, False), ({}, False, False)]
-)
-def test_what_balances_turns_under_a_law_that_follows_the_motion(
-    loose, changes: dict, balanced: bool, turns: bool
-) -> None:
-    body = loose(**WITH_HISTORY, **changes)
-    start = settled(body, has_history=False) if balanced else None
-    system = DiskSystem(body, STEP, start)
-    state = begun(system, None if start is None else start.displacement)
-    assert system.turning is None
-    system.react(LAW_ENDS, 1, state)
-
-    assert (system.turning is not None) == turns
-    if turns:
-        assert system.turning is system.balance.followers
-
-
 def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
     body = loose(**WITH_HISTORY, **REFERENCE)
     system = DiskSystem(body, STEP)

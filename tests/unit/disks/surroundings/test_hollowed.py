@@ -75,17 +75,6 @@ def test_heights_must_be_an_element_apart() -> None:
         assert smaller.outside.body.mesh.element_sizes[:, 1].max() <= 3.0
 
 
-def test_monitors_above_lower_ground_are_refused() -> None:
-    """The continuum begins 4 m further on to absorb; on the floor itself, at 12 m, a monitor may be."""
-    found = line(*slope(12.0), monitor=[{"name": "air", "position": [32.0, 13.7]}])
-    assert found == (
-        "monitor[1, air].position: lies above the ground, which is lower beyond this side; the nearest place allowed "
-        "is (32, 12) m"
-    )
-    made = scene(*slope(12.0), monitor=[{"name": "on", "position": [32.0, 12.0]}])
-    assert made.between["on"].place.tolist() in ([31.5, 11.5], [32.5, 11.5])
-
-
 def test_a_force_on_the_floor_beyond_is_on_the_continuum() -> None:
     force = {"name": "f", "force": [0.0, -8e3], "region": [29.9, 11.9, 33.75, 12.5]}
     made = scene(*slope(12.0), load=[force])

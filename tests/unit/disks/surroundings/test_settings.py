@@ -7,7 +7,6 @@ import pytest
 from disk_systems import LAMB
 
 from dembound.continuum import sizing
-from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Medium
 from dembound.disks.surroundings.settings import (
     Buried,
@@ -16,7 +15,6 @@ from dembound.disks.surroundings.settings import (
     mesh_of,
     near_fields,
     settings_of,
-    signals_of,
 )
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
@@ -44,15 +42,6 @@ def chosen(case, diameter: float = 1.0, sides=SIDES):
     return settings_of(case, ROCK, diameter, BOX, sides)
 
 
-def test_settings_left_out_are_those_of_the_waves(case) -> None:
-    found = chosen(case())
-
-    assert found.element == pytest.approx(sizing.element_size(signals_of(case()), ROCK, 4, 1e-3))
-    assert (found.margin, found.layers) == (1, 3)
-    assert found.absorption == Absorption(pytest.approx(1e-4), 0.3, 0.1)
-    assert chosen(case(outside={"accuracy": 1e-2})).absorption.reflection == pytest.approx(1e-3)
-
-
 def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) -> None:
     """A load 1.5 m from the left side, a hole 2 m from the bottom; no such distance counts at a free side."""
     near = case(load={"position": [1.5, 9.5]})
@@ -72,24 +61,6 @@ def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) ->
     assert chosen(near).element == pytest.approx(5.0)  # 1.25 diameters between nodes
     random = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
     assert chosen(case(packing=random, load={"position": [1.5, 9.5]})).element == pytest.approx(11.2)
-
-
-def test_a_whole_number_of_elements_fits(case) -> None:
-    found = chosen(case())._replace(element=9.0, least=0.0)
-
-    assert [found.side(length) for length in (40.0, 9.0, 9.1, 3.0)] == [8.0, 9.0, 4.55, 3.0]
-    # but not more than are useful
-    assert [found._replace(least=6.0).side(length) for length in (40.0, 9.1, 12.0, 3.0)] == [8.0, 9.1, 6.0, 3.0]
-
-
-def test_what_makes_waves(case) -> None:
-    assert [(each.wave.type, each.is_force) for each in signals_of(case())] == [("cosine", True)]
-    steady = signals_of(case(load={"wave": None}))
-    assert [(each.wave.type, each.is_force) for each in steady] == [("cosine", False), ("constant", True)]
-    assert sizing.jumps(steady[1])
-    driven = {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "outside"}}
-    both = signals_of(case(boundary=driven))
-    assert [(each.wave.type, each.is_force) for each in both] == [("cosine", False), ("cosine", True)]
 
 
 def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
@@ -119,19 +90,6 @@ def test_a_load_that_stays_needs_a_margin(case) -> None:
         less, enough = (mesh_of(found._replace(margin=found.margin - each), BOX, sides).inner for each in (1, 0))
         assert less < inner <= enough
         assert found.layers == sizing.layer_count(4, 5e-4)
-
-
-def test_elements_lie_where_there_are_sides(case) -> None:
-    found = chosen(case())._replace(element=10.0, margin=2, layers=3)
-    mesh = mesh_of(found, BOX, ("right", "bottom"))
-
-    assert mesh.cells == (4 + 5, 2 + 5)
-    assert mesh.origin == (0.0, -50.0)
-    left, right, lower, upper = mesh.sides
-    assert (left, lower, right, upper) == BOX
-    assert mesh.layer == (0, 3, 3, 0)
-    assert mesh.axes[0].thickness == (0.0, 30.0)
-    assert math.isclose(mesh.inner, 60.0)
 
 
 def test_elements_of_flat_ground_are_about_as_wide_as_high(case) -> None:

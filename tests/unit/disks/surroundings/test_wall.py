@@ -137,21 +137,3 @@ def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
     made = square()
     # half bonds of 2K with K = ρc_p²: η·2K = 0.3 ρc_pD
     assert lag_of(made, 0.3) * 2.0 * made.stiffness.normal[0] == pytest.approx(0.3 * 2500.0 * 1000.0 * 0.5)
-
-
-def test_elongations_times_stiffness_are_the_forces_of_the_kernels(ground) -> None:
-    """For any motion; forces on disks and nodes by the transpose."""
-    tied = Tied(ground)
-    wall, u = tied.wall, np.random.default_rng(4).standard_normal((3, tied.count))
-    of_disks, of_nodes = wall.elongations
-    disks, nodes = wall.bonds.particle, tied.particles + tied.mesh.nodes[wall.element].reshape(len(wall.element), -1)
-    pull = wall.bonds.stiffness * (
-        np.einsum("etc,ct->et", of_disks, u[:, disks]) + np.einsum("etcq,ctq->et", of_nodes, u[:2][:, nodes])
-    )
-    expected = np.zeros((tied.count, 3))
-    np.add.at(expected, disks, -np.einsum("etc,et->tc", of_disks, pull))
-    np.add.at(expected[:, :2], nodes, -np.einsum("etcq,et->tqc", of_nodes, pull))
-    force = np.zeros_like(expected)
-    energy = tie_forces(tied.ties(), u, np.zeros_like(u), force, 0.0)
-    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
-    assert energy == pytest.approx(-0.5 * np.sum(u.T * expected), rel=1e-12)
