@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.scene import entering_pressure, moments
+from dembound.bar.scene import entering_pressure
 
 TIME = np.array([-1e-5, 5e-5, 2e-4, 4e-4])
 SHAPE = np.array([0.0, 0.25, 1.0, 0.0])
@@ -29,13 +29,3 @@ def test_a_dashpot_takes_its_part_of_a_load_and_lets_its_wave_in(spalling, side,
     np.testing.assert_allclose(entering_pressure(case, side, TIME, loads=False), wave * SHAPE, rtol=1e-12, atol=1e-6)
     np.testing.assert_allclose(entering_pressure(case, side, TIME), (wave + load) * SHAPE, rtol=1e-12, atol=1e-6)
     assert entering_pressure(case, side, np.zeros((2, 3))).shape == (2, 3)
-
-
-def test_a_wave_is_looked_at_from_its_start_to_its_end(spalling) -> None:
-    time = moments(spalling({"wave.hit.start": 1e-3, "run.duration": 1e-2}), "left")
-
-    # within two of 500 parts of the run
-    assert time[0] == pytest.approx(1e-3, abs=4e-5)
-    assert time[-1] == pytest.approx(1.4e-3, abs=4e-5)
-    assert np.abs(time - 1.2e-3).min() < 1e-15
-    assert moments(spalling({"load": []}), "left").tolist() == [0.0]

@@ -5,7 +5,6 @@ import pytest
 
 from dembound.bar.part import BarPart
 from dembound.bar.scene import build_bar
-from dembound.errors import RunError
 from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps
@@ -114,13 +113,3 @@ def test_a_bar_has_blown_up_when_it_swings_beyond_what_a_step_can_follow(simulat
         part.bonds.spring[:] = 0.0
         part.bonds.bond[:] = 0.0
         assert part.blown_up(slow) == where[1]
-
-
-def test_an_answer_that_the_step_is_too_long_for_ends_the_run(simulation, monkeypatch) -> None:
-    run = simulation(0.99, method=METHODS["patch"])
-    limit = 0.98 * UNIT
-    # no such bonds come about by themselves, as the step serves at every stage that the method names
-    monkeypatch.setattr(type(run.scene), "is_stable", lambda scene, bonds, step: step <= limit)
-    monkeypatch.setattr(type(run.scene), "stable_step", lambda scene, bonds: limit)
-    with pytest.raises(RunError, match=rf"allow a time step of {limit:.6g} s only; take a smaller run.time_step"):
-        run.advance(70)

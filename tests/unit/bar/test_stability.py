@@ -2,7 +2,7 @@
 
 import pytest
 
-from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step, shortened_in_words
 from dembound.errors import CaseError
 
@@ -17,16 +17,6 @@ def test_a_bar_may_run_at_its_limit(spalling, cells: int) -> None:
 
     assert step == pytest.approx(1e-3 / cells, rel=1e-15)
     assert limit == pytest.approx(step, rel=1e-12)
-
-
-def test_a_limit_may_be_wrong_by_rounding_and_no_more(spalling, monkeypatch) -> None:
-    scene = build_bar(spalling(CENTRAL))
-    monkeypatch.setattr(BarScene, "step_limit", lambda scene: UNIT * (1.0 - 1e-12))
-    assert choose_step(scene)[0] == pytest.approx(UNIT, rel=1e-15)
-
-    monkeypatch.setattr(BarScene, "step_limit", lambda scene: UNIT * (1.0 - 1e-8))
-    with pytest.raises(CaseError, match="must not be above 1, "):
-        choose_step(scene)
 
 
 PATCH = {"method": {"type": "patch", "horizon": 3}}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.contacts.pair_list import CELL, cells_of
-from dembound.kernels.near import approach, moved
+from dembound.kernels.near import approach
 
 COUNT, SIZE, RADIUS = 800, (30.0, 10.0), 0.25
 
@@ -64,27 +64,3 @@ def test_disks_that_all_move_along_do_not_come_nearer_and_one_that_runs_away_cou
     assert approach(u, 0, np.zeros((2, COUNT)), cells) == 0.0
     u[0] = 1.1 * cells.reach  # so far that disks of any cells may meet
     assert approach(u, 0, np.zeros((2, COUNT)), cells) == 2.0 * u[0, 0]
-
-
-@pytest.mark.parametrize("places", [[[1.0, 2.0]], [[0.0, 0.0], [3.0, 0.0]], [[-4.0, 1e7], [5.0, -1e7], [0.0, 0.0]]])
-def test_cells_of_a_few_disks(places) -> None:
-    places = np.array(places)
-    cells = cells_of(places, np.full(len(places), RADIUS), np.arange(len(places)), (None, None))
-    assert sorted(cells.member) == list(range(len(places)))
-    assert len(cells.start) - 1 == cells.divisions.prod() <= len(places) ** 2
-    u = np.zeros((3, len(places)))
-    u[0, 0] = 0.1
-    least = 0.1 if len(places) == 2 else 0.0  # a disk alone, or far from all others, meets none
-    assert least <= approach(u, 0, np.zeros((2, len(places))), cells) <= 0.2
-
-
-def test_the_largest_motion_since_the_list_was_made() -> None:
-    u, origin = np.zeros((3, 500)), np.full((2, 500), 1.0)
-    u[:2] = origin
-    u[:2, 321] += [3.0, -4.0]
-    u[2] = 100.0  # turning takes nobody nearer
-
-    assert moved(u, 0, origin) == 5.0
-    # of the particles from 320 or 322 on
-    assert moved(u, 320, origin[:, 320:]) == 5.0
-    assert moved(u, 322, origin[:, 322:]) == 0.0

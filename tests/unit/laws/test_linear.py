@@ -59,8 +59,3 @@ def test_the_linear_law_of_a_law_is_linear() -> None:
     with pytest.warns(UserWarning, match='"brittle" names "rubber" as its linear law, which must be a linear law'):
         found = _usable({law.name: law for law in (Elastic(), Rubber(), Brittle())})
     assert list(found) == ["elastic", "rubber"]
-
-
-def test_contacts_that_open_are_found_not_to_be() -> None:
-    assert not LAWS["linearpbond"].is_linear
-    assert not is_linear("linearpbond")

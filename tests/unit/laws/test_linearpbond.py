@@ -42,13 +42,6 @@ def test_gaps_close_or_not(gaps_close: bool, stiffness: float) -> None:
     assert shear.tolist() == [3e9, 3e9, stiffness / 2.0]
 
 
-def test_pairs_without_bonds_have_no_bond_stiffness() -> None:
-    bonded, loose = constants(), constants(bonded=False)
-
-    assert not loose[:, 7:10].any()
-    assert np.array_equal(np.delete(loose, [7, 8, 9], axis=1), np.delete(bonded, [7, 8, 9], axis=1))
-
-
 def test_at_rest_a_pair_is_as_stiff_as_under_the_elastic_law() -> None:
     found = constants(gaps_close=False)
     elastic = LAWS["elastic"].stiffness(MODULI, *RADII, np.hypot(*VECTORS.T))

@@ -4,8 +4,6 @@ import numba
 import numpy as np
 import pytest
 
-from dembound.errors import RunError
-from dembound.motion import stability
 from dembound.motion.stability import TOLERANCE, largest_eigenvalue
 from dembound.motion.state import Layout
 
@@ -57,11 +55,3 @@ def test_any_number_of_threads_gives_the_same_bits() -> None:
     finally:
         numba.set_num_threads(allowed)
     assert found[0] == found[1]
-
-
-def test_an_iteration_that_does_not_end_is_an_error(monkeypatch) -> None:
-    layout, mass, _ = scene()
-    monkeypatch.setattr(stability, "MOST", 1)
-    moves = np.ones((3, NODES), dtype=np.bool_)
-    with pytest.raises(RunError, match="was not found in 1 iterations"):
-        largest_eigenvalue(layout, mass, mass, FREE, moves, lambda u, force: np.copyto(force, -u))

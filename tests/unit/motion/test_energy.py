@@ -61,16 +61,6 @@ def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: floa
         assert entry.stepping == pytest.approx(ledger.entries[0].stepping, rel=1e-12)
 
 
-@pytest.mark.parametrize(("came", "counts"), [(9e-8, False), (1.1e-7, True)])
-def test_what_is_rounding_of_the_stored_energy_is_not_supplied(bar, came: float, counts: bool) -> None:
-    """With 1 MJ stored at the start 1e-13 is 1e-7 J; it may come as motion, from outside or by loads."""
-    for where in range(3):
-        ledger = booked(simulated(bar))
-        ledger._first = 8e5, 2e5
-        ledger._came, outside, load = (came if place == where else 0.0 for place in range(3))
-        assert ledger._supplied(outside, load) == (came if counts else 0.0)
-
-
 @pytest.mark.parametrize(
     ("interval", "last", "steps"),
     [
@@ -92,20 +82,6 @@ def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: l
     assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
     assert np.array_equal(other.state.displacement, each.state.displacement)
     assert np.array_equal(np.concatenate(records), record)
-
-
-BRITTLE = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e6}
-
-
-def test_what_was_locked_in_is_no_energy_gained(bar) -> None:
-    dense = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-    changes = {"packing": dense, "monitor": [], "wave.pulse.start": 1.0, "motion.held": []}
-    simulation = simulated(bar, **changes, **BRITTLE)
-    ledger = booked(simulation)
-    simulation.advance(3)
-
-    assert len(ledger.entries) == 3
-    assert not ledger.columns[:, 1:].any()
 
 
 def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:

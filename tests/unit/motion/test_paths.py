@@ -66,13 +66,6 @@ def test_at_the_plane_needed_the_last_way_is_as_long_as_waves_get(side: str, box
     assert min(spare) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_nothing_is_needed_where_nothing_comes() -> None:
-    place = np.array([[7.0, 6.0]])
-
-    assert plane_needed("right", [], place, Front(1.0, 0.1), 5.0) == -np.inf
-    assert plane_needed("left", [source(EVERYWHERE, 5.0)], place, Front(1.0, 0.1), 4.0) == np.inf
-
-
 def test_the_first_arrival_is_that_of_the_nearest_way_and_the_earliest_source() -> None:
     left = Source((0.0, -np.inf, 0.0, np.inf), 2.0, 3.0, 1.0)
     point = Source((8.0, 0.0, 8.0, 0.0), 5.0, 6.0, 1.0)

@@ -46,14 +46,6 @@ def test_a_run_ends_once_all_have_been_silent_for_long_enough(block: int) -> Non
     assert whole == -(-39 // block) * block
 
 
-def test_the_level_is_each_monitors_own() -> None:
-    weak = pulse(100, 10, 20, 1e-6) + pulse(100, 21, 60, 2e-8)
-    strong = pulse(100, 0, 5)
-
-    assert ended_at(np.column_stack([strong, weak]), Silent(0.01, 4.0, 0.0), 1) == 60 + 9
-    assert ended_at(np.column_stack([strong, weak]), Silent(0.03, 4.0, 0.0), 1) == 20 + 9
-
-
 def test_the_level_is_that_of_the_peak_so_far() -> None:
     # loud when it came, however small beside what came later
     speeds = (pulse(100, 3, 6, 1e-4) + pulse(100, 12, 15))[:, None]

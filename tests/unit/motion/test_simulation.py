@@ -8,12 +8,11 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step, step_limit
-from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.motion.scene import FASTEST
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Every, Tracker
+from dembound.motion.trackers import Every
 from dembound.running import plan
 
 NOBODY = np.zeros(0, dtype=np.int64)
@@ -78,21 +77,6 @@ def simulated(bar, probes: np.ndarray = NOBODY) -> Simulation:
     return Simulation(scene, choose_step(scene)[0], probes)
 
 
-class Heard(Tracker):
-    """Notes every return of the loop: its step, and the number of rows in the record."""
-
-    name = "heard"
-
-    def __init__(self) -> None:
-        self.seen: list[tuple[int, int]] = []
-
-    def handle(self, simulation: Simulation) -> None:
-        raise AssertionError("it is never due")
-
-    def observe(self, simulation: Simulation, record: np.ndarray) -> None:
-        self.seen.append((simulation.state.step, len(record)))
-
-
 class Noting(Every):
     """Writes down the steps at which it sees a run."""
 
@@ -122,48 +106,6 @@ def test_a_run_goes_on_alike_wherever_it_is_cut_and_seen(bar) -> None:
     assert whole.state.displacement[0].any()
     assert not whole.state.displacement[1].any()
     assert not whole.state.velocity[1].any()
-
-
-def test_a_run_stops_at_the_ends_of_blocks_and_at_the_steps_that_trackers_have_named(bar) -> None:
-    simulation, heard = simulated(bar), Heard()
-    simulation.track(heard)
-    simulation.run(DiskScene.block + 10)
-    assert heard.seen == [(DiskScene.block, DiskScene.block), (DiskScene.block + 10, 10)]
-
-    simulation, heard, early, late = simulated(bar), Heard(), Noting(7), Noting(5, first=9)
-    simulation.track(heard, early, late)
-    simulation.run(20)
-    assert early.seen == [0, 7, 14]
-    assert late.seen == [9, 14, 19]
-    assert heard.seen == [(7, 7), (9, 2), (14, 5), (19, 5), (20, 1)]
-
-
-def test_a_tracker_may_end_a_run(bar) -> None:
-    class Enough(Noting):
-        def see(self, simulation: Simulation) -> None:
-            simulation.stopped = True
-
-    simulation = simulated(bar)
-    simulation.track(Enough(5, first=5))
-    simulation.run(20)
-
-    assert simulation.state.step == 5
-
-
-def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
-    edges = build(bar()).edges
-    simulation = simulated(bar, edges["right"].nodes)
-    velocities = [simulation.state.velocity[:, simulation.scene.edges["right"].nodes].T]
-    for _ in range(60):
-        simulation.advance(1)
-        velocities.append(simulation.state.velocity[:, simulation.scene.edges["right"].nodes].T)
-    history = np.array(velocities)
-
-    assert np.array_equal(simulation.edge_peaks("right")[..., 0], history.min(axis=0))
-    assert np.array_equal(simulation.edge_peaks("right")[..., 1], history.max(axis=0))
-    # the pulse of 0.5 m/s has gone through by then, and has come to no other side's account
-    assert simulation.edge_peaks("right")[0, 0, 1] > 0.4
-    assert [len(simulation.edge_peaks(side)) for side in edges] == [2, 2, 20, 20]
 
 
 def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(bar) -> None:
@@ -228,35 +170,3 @@ def test_local_damping_is_the_materials_unless_given_otherwise(bar) -> None:
     # the first step finds it at rest, and is half a kick unless the way to rest is sought
     assert own.state.velocity[0, 0] == pytest.approx(STEP * (0.5 + 10 * 0.5), rel=1e-14)
     assert other.state.velocity[0, 0] == pytest.approx(STEP * (1.0 + 10 * 0.8), rel=1e-14)
-
-
-PACKED = {
-    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
-    "material.law": "linearpbond",
-    "material.locked_in": 10e6,
-    "static": {},
-    "motion.held": [],
-    "boundary": {},
-    "wave": {},
-    "monitor": [],
-}
-
-
-def at_rest(scene: DiskScene) -> Simulation:
-    """A body as built, taken as settled."""
-    start, step = Start(np.zeros((3, scene.count)), contact_lists(scene)), choose_step(scene)[0]
-    return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
-
-
-def test_what_is_locked_in_is_balanced_unless_the_body_shall_settle(bar) -> None:
-    scene = build(bar(PACKED))
-    step, _ = choose_step(scene)
-    calm = at_rest(scene)
-    settling = Simulation(scene, step, system=DiskSystem(scene, step, settling=True))
-    for simulation in (calm, settling):
-        simulation.advance(20)
-
-    assert not calm.state.velocity.any()
-    # cut faces lack the push of 10 MPa: outwards
-    outwards = scene.assembly.positions - 2.0
-    assert np.sum(outwards.T * settling.state.displacement[:2]) > 0.0

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from numba import config, njit
 
-from dembound.kernels.calls import Given, Motion, entered
 from dembound.kernels.common import FAST, MAKES
 from dembound.kernels.compiler.bundles import Written, kind_of
-from dembound.kernels.tables import NO_SIDES, Body, Bonded, Cells, Contacts, Limits, Log, Supports
+from dembound.kernels.tables import Bonded, Cells, Contacts, Limits
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
 
@@ -75,18 +74,3 @@ def test_only_what_has_changed_is_written_and_nothing_of_another_type() -> None:
         assert kind_of(other) != kind_of(law)
         assert not written.takes(other)
         np.testing.assert_array_equal(written.numbers, before)
-
-
-def test_the_loop_refuses_motion_of_another_type() -> None:
-    row, value, none, layer = np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))
-    body = Body(value, value, value, row, 0.0, 0.0)
-    supports = Supports(none, row, row, row, row, row, layer, none, row)
-    log = Log(none, layer, none, layer, value, row, value, NO_SIDES)
-    good = Motion(row, row, row)
-    assert len(entered((), (), (), (good, good), Given.by(body, supports, log), {})) == 5
-    for motion, given in (
-        (good._replace(v=np.zeros((2, 3)).T), Given.by(body, supports, log)),
-        (good, Given.by(body._replace(damp=0), supports, log)),
-    ):
-        with pytest.raises(TypeError, match="the loop takes"):
-            entered((), (), (), (good, motion), given, {})

@@ -73,23 +73,6 @@ def test_each_chunk_is_computed_once_by_any_number_of_threads(count) -> None:
     assert set(threads) == {0}
 
 
-@apart()
-@njit(**OWN)
-def _returns(values):
-    return values[0]
-
-
-@njit(**OWN)
-def _calls(values):
-    _returns(values)
-
-
-def test_a_kernel_that_cannot_be_compiled_as_declared_raises_in_its_caller(capsys) -> None:
-    with pytest.raises(RuntimeError, match=r"_returns was not compiled"):
-        _calls(np.zeros(1))
-    assert "_returns returns float64, not none" in capsys.readouterr().err
-
-
 MODULE = """
 from numba import njit, types
 from dembound.kernels.compiler.separate import apart, in_chunks

@@ -17,12 +17,6 @@ def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:
     return bar_outcome(summary | more)
 
 
-def test_spalls_are_reported_with_their_places_and_the_note_on_them() -> None:
-    spalls = [{"start": place, "time": 4.393e-4} for place in ([0.906, 0.909], [1.0, 1.0])]
-    reported = outcome(spalls, "they multiply")
-    assert reported == ["spall at 0.906–0.909 m, 439 µs", "spall at 1 m, 439 µs", "they multiply"]
-
-
 @pytest.mark.parametrize(("count", "lines", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
 def test_of_many_spalls_the_first_are_reported(count: int, lines: int, last: str) -> None:
     facts = outcome([{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)])

@@ -130,12 +130,3 @@ def test_pull_back_is_that_of_a_free_end_beyond_a_spall(run, side: str, free: fl
     # ½ρc of how far the velocity falls; the loaded end and the middle tell nothing of it
     found = summarise_bar(planned.scene, simulation, path)["pull_back_strength"]
     assert found == {f"at-{free:g}": 0.5 * 2500.0 * 1000.0 * first_fall(outwards * velocity)}
-
-
-@pytest.mark.parametrize(
-    "changes", [{"bar.strength": 1e9}, {"boundary.right": {"type": "viscous"}}], ids=["unbroken", "no free end"]
-)
-def test_there_is_no_pull_back_without_a_spall_or_a_free_end(run, changes: dict) -> None:
-    planned, simulation, path = run(**gauges(0.0, 0.5, 1.0), **changes)
-
-    assert summarise_bar(planned.scene, simulation, path)["pull_back_strength"] == {}

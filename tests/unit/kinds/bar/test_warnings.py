@@ -16,7 +16,6 @@ EXACT = {"method": {"type": "finite_difference"}}
 """Changes after which, at ν = 1, waves of any length run at the speed c."""
 LONG = {"wave.hit.rise": 1e-2, "wave.hit.fall": 1e-2, "run.duration": 2e-2}
 """The blow with waves far longer than the bar."""
-SHORT = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
 _, SPALLED = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
 """Even legs of 0.2 ms: the strength is met 0.5 c t_f σ_t/p before the end, 1/15 m."""
 
@@ -94,29 +93,6 @@ def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, war
         assert line.endswith("take a smaller bar.spacing or method.horizon")
 
 
-def test_only_waves_in_use_can_be_too_short_and_only_a_horizon_be_made_smaller(spalling) -> None:
-    ends = {"boundary.left": {"type": "viscous_input", "wave_p": "in"}, "load": []}
-    case = spalling({**LONG, **ends, "method.corrected_ends": True, "wave.in": SHORT, "wave.spare": SHORT})
-    warnings = bar_warnings(build_bar(case), 2e-5)
-    assert len([warning for warning in warnings if "shortest wavelength" in warning]) == 1
-    assert {warning.split(":")[0] for warning in warnings} == {"wave.in"}
-    for method in ("finite_difference", "switch"):
-        changes = {"method": {"type": method} | ({"horizon": 3} if method == "switch" else {})}
-        case = spalling({**changes, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
-        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "shortest wavelength" in each]
-        assert warning.endswith("take a smaller bar.spacing")
-
-
-def test_a_step_has_less_than_one_cell_and_is_allowed_to_a_slow_grip(spalling) -> None:
-    step = {"type": "constant", "amplitude": 1e-4, "rise": 0.0}
-    ends = {"boundary.right": {"type": "velocity", "wave_p": "in"}}
-    for duration, few in ((0.099, 1), (0.101, 0)):  # at 1000 m/s, 100 ways of 1 m are 0.1 s
-        case = spalling({**LONG, **ends, "wave.in": step, "run.duration": duration})
-        found = [each for each in of_key("wave.in", bar_warnings(build_bar(case), 2e-5)) if "wavelength" in each]
-        assert len(found) == few
-        assert all("has less than one cell in its shortest wavelength" in each for each in found)
-
-
 @pytest.mark.parametrize(
     ("method", "warned"),
     [
@@ -170,15 +146,6 @@ def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
         assert "from the free left end" in warning
         assert float(warning.split()[-2]) == pytest.approx(1e-3 + SPALLED, abs=4e-6)
         assert not list(ends_too_soon(spalling({**changes, **later, "run.duration": 2.3e-3})))
-
-
-@pytest.mark.parametrize(("duration", "warned"), [(1.19e-3, True), (1.21e-3, False)])
-def test_a_wave_too_weak_to_spall_is_back_when_its_crest_is(spalling, duration: float, warned: bool) -> None:
-    said = (
-        "run.duration: is 0.00119 s, too short for any tension: the wave's crest is not at the free right end, which "
-        "returns it as tension, before 0.0012 s"
-    )
-    assert list(ends_too_soon(spalling({"run.duration": duration, **blow(7e6)}))) == warned * [said]
 
 
 def test_a_dashpot_takes_half_of_a_load(spalling) -> None:
@@ -300,16 +267,6 @@ def test_gaps_that_never_close_are_known_before_the_run(velocity, gap, duration,
     found = never_closing(case)
     assert list(found) == ["rod"] * bool(said)
     assert found.get("rod", "").startswith(said)
-
-
-def test_no_gap_is_foreseen_where_waves_move_the_bar() -> None:
-    """A striker held at its end, another impact, a load: each sends waves by which a range may turn round."""
-    away = [STRIKER[0] | {"velocity": -5.0}, STRIKER[1]]
-    third = {"name": "c", "length": 0.2, "velocity": -1.0, "interface": "contact"}
-    assert never_closing(with_ranges(away))
-    assert not never_closing(with_ranges(away, boundary={"left": {"type": "fixed"}}))
-    assert not never_closing(with_ranges([*away, third]))
-    assert not never_closing(with_ranges(away, load=SPALLING["load"], wave=SPALLING["wave"]))
 
 
 def test_a_load_over_a_length_beside_that_of_its_wave_is_warned_of() -> None:

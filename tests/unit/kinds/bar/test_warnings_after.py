@@ -1,17 +1,14 @@
 """Warnings about probable mistakes in a bar's case, after the run."""
 
 import json
-import shutil
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
 from small_cases import SPALLING, small
 
 from dembound.bar.scene import build_bar
 from dembound.kinds.bar.warnings_after import warnings_after_bar
-from dembound.results.warnings import still_moving
 from dembound.running import resume_case, run_case
 
 
@@ -154,23 +151,6 @@ def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:
     assert after(spalling({**FIRM, "bar": unbroken}), folder) == []
 
 
-@pytest.mark.parametrize("changes", [{"run.duration": 5e-4}, blow(5.0, 3)], ids=["too short", "too weak"])
-def test_what_was_known_before_the_run_is_not_reported_again(run, changes: dict) -> None:
-    assert run({"method": {"type": "finite_difference"}, **changes}) == []
-
-
-def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_run, tmp_path) -> None:
-    path = Path(shutil.copy(spalled_run, tmp_path / "run.h5"))
-    with h5py.File(path, "r+") as file:
-        velocity = file["histories/gauge/velocity"]
-        velocity[:, 0] = np.linspace(0.0, 1.0, len(velocity)) ** 4
-    scene = build_bar(spalling({"boundary.left": {"type": "viscous"}}))
-    there = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
-    for where, warned in ((there, True), ({**there, "end": [0.3, 0.4]}, False)):
-        found = warnings_after_bar(scene, summary_of(where, duration=1.5e-3), path)
-        assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]
-
-
 @pytest.mark.parametrize(("rates", "beyond"), [([1e-3, 2e-3], "above 0.002"), ([1e4, 2e4], "below 10000")])
 def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: list[float], beyond: str) -> None:
     law = {"bar.fracture_energy": 2e3, "bar.strength_per_decade": 1e3, "bar.strength_rates": rates}
@@ -179,15 +159,3 @@ def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: lis
 
     assert warning.startswith("bar.strength_rates: cracks had strain rates of ")
     assert f"{beyond}; the strength is constant there" in warning
-
-
-def test_a_forerunner_beside_the_motion_of_the_body_is_no_motion(tmp_path) -> None:
-    """The only monitor has a growing velocity of 1e-13 m/s while the body moves, which a longer run would not end."""
-    end = {"right": {"type": "viscous"}}
-    scene = build_bar(small(SPALLING | {"boundary": end, "monitor": [{"name": "far", "position": 1.0}]}))
-    with h5py.File(tmp_path / "run.h5", "w") as file:
-        file["histories/far/velocity"] = np.outer(np.linspace(0.0, 1e-13, 100), [1.0, 0.0, 0.0])
-        pieces = np.zeros(scene.count, dtype=np.int64)
-        assert list(still_moving(scene, 1e-4, file, pieces))  # without a ledger nothing larger is known
-        file["energy/kinetic"] = np.array([0.0, 1.0])
-        assert list(still_moving(scene, 1e-4, file, pieces)) == []

@@ -127,38 +127,10 @@ def test_a_margin_too_small_below_the_surface(case) -> None:
 LAYERS = {"layer": [{"thickness": 6.0, "density": 1800.0, "s_wave_speed": 350.0}, {}], "outside.accuracy": 0.01}
 
 
-def test_layers_have_their_own_points_and_depths(case) -> None:
-    """Elements in the lower layer are taller, with as many nodes to its longer waves; five wide ones absorb beside."""
-    facts = facts_of(case, **LAYERS)
-    outside = build(with_changes(case, LAYERS)).outside
-
-    nodes = [float(each) for each in re.match(r"([\d.]+), ([\d.]+) nodes", facts["continuum waves"]).groups()]
-    assert min(nodes) >= 6.0
-    begin, deep = (
-        outside.body.mesh.axes[0].sizes[0] / 3.0,
-        sum(outside.body.mesh.widths[: len(outside.settings.beside)]),
-    )
-    assert facts["absorbing layers"].startswith(f"begin {begin:.4g}")
-    assert f"are {deep:.4g}" in facts["absorbing layers"]
-    assert f"elements ({len(outside.settings.beside)} left and right)" in facts["absorbing layers"]
-    assert warnings_of(case, **LAYERS) == []
-
-
 def test_a_low_row_of_elements_has_a_warning(case) -> None:
     thin = LAYERS | {"layer": [{"thickness": 8.0}, {"name": "seam", "thickness": 2.0}, {}]}
     (line,) = warnings_of(case, **thin)
     assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
-
-
-def test_elements_too_large_beside_a_load(case) -> None:
-    slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
-    near = {"load": [{"name": "f", "position": [20.5, 4.5], "force": [0.0, -1e6], "wave": "pulse"}]}
-
-    assert warnings_of(case, **slow) == []
-    (line,) = warnings_of(case, **slow, **near)
-    assert line.startswith(
-        "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
-    )
 
 
 def test_layers_of_strongly_anisotropic_ground(case) -> None:

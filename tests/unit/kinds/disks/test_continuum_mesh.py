@@ -1,11 +1,5 @@
 """Meshes of a continuum for ParaView equal the record, and have the colours of the disks."""
 
-import re
-import sys
-from functools import partial
-from pathlib import Path
-from unittest.mock import MagicMock
-
 import h5py
 import numpy as np
 import pytest
@@ -81,27 +75,3 @@ def test_the_last_cells_of_a_periodic_continuum_reach_its_first_nodes(axis: int,
     areas = 0.5 * (across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0])
     assert areas.min() > 0.0
     assert areas.sum() == pytest.approx(float(np.prod(mesh.size)), rel=1e-7)
-
-
-def test_the_script_shows_both_in_one_scale(exported, monkeypatch) -> None:
-    simple, largest = MagicMock(), {"particles.pvd": 2.0, "continuum.pvd": 5.0}
-    table, shown = simple.GetColorTransferFunction.return_value, {name: MagicMock() for name in largest}
-    simple.GetActiveSource.return_value = None
-    simple.__all__ = re.findall(r"\b(?:Get|Open|Show|Color|Render)\w*(?=\()", (exported / "view.py").read_text())
-    simple.OpenDataFile.side_effect = lambda path: Path(path).name
-    simple.Show.side_effect = lambda source, _: shown[source]
-    for name, made in shown.items():
-        ends = [0.0, 0.1, 0.2, 0.3, largest[name], 0.7, 0.8, 0.9]
-        made.RescaleTransferFunctionToDataRangeOverTime.side_effect = partial(setattr, table, "RGBPoints", ends)
-    monkeypatch.setitem(sys.modules, "paraview", MagicMock())
-    monkeypatch.setitem(sys.modules, "paraview.simple", simple)
-    path = exported / "view.py"
-    exec(compile(path.read_text(), path, "exec"), {"__file__": str(path)})  # as ParaView does
-
-    for made, kind in zip(shown.values(), ("Point Gaussian", "Surface"), strict=True):
-        made.SetRepresentationType.assert_called_once_with(kind)
-    assert [call.args for call in simple.ColorBy.call_args_list] == [
-        (made, ("POINTS", "linVelVec", "Magnitude")) for made in shown.values()
-    ]
-    simple.GetColorTransferFunction.assert_called_with("linVelVec")
-    table.RescaleTransferFunction.assert_called_with(0.0, 5.0)

@@ -121,31 +121,6 @@ def test_the_law_is_reported_with_strength_and_stiffness_in_tension(bar, materia
     )
 
 
-PACKED = {
-    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
-    "monitor": [],
-    "static": {},
-    "material.law": "linearpbond",
-    "boundary.left.intact": 0,  # two disks from both sides would be half of the body
-    "boundary.right.intact": 0,
-}
-
-
-@pytest.mark.parametrize(
-    ("strength", "more"),
-    [
-        ({}, ""),
-        ({"pb_ten": 4e6, "pb_coh": 1e7}, ", 62.5 % of pb_ten, 25 % of pb_coh"),
-        ({"pb_coh": 2e6}, ", 125 % of pb_coh"),
-    ],
-)
-def test_a_locked_in_stress_stands_beside_the_strength(bar, strength: dict, more: str) -> None:
-    case = {**PACKED, "material.locked_in": 2.5e6, **{f"material.{key}": value for key, value in strength.items()}}
-    assert facts_of(bar(case))["locked-in stress"] == f"2.5 MPa before the static stage{more}"
-    without = {**PACKED, "static": {"stress": [-1e6, -1e6, 0.0]}, "material.pb_ten": 4e6}
-    assert "locked-in stress" not in facts_of(bar(without))
-
-
 def test_loads_and_the_static_stage_are_reported(bar) -> None:
     weight = {"name": "weight", "acceleration": [10.0, 0.0]}
     tap = {"name": "tap", "force": [1e6, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "pulse"}

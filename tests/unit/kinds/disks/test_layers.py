@@ -6,25 +6,21 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
-from readable import drawn_quickly
 from small_cases import GRAINS, small
 from warned_cases import warned
 
 from dembound import api
 from dembound.disks.material.packing_waves import front_of
-from dembound.disks.memory import SceneSizes
 from dembound.disks.scene import build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import step_limit
 from dembound.disks.supports import forces_of
-from dembound.disks.trials import trials_of_disks
 from dembound.formulas.disks.coarse_grid import Grid, undisturbed
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.summary import describe_layers, describe_side
 from dembound.kinds.disks.wave_warnings import strong_waves
 from dembound.plot.scene import plot_scene
-from dembound.report import page
 from dembound.results.vtk import write_paraview
 
 LAYERS = [
@@ -137,15 +133,6 @@ def test_a_pressure_on_bonds_is_that_of_the_layer() -> None:
         np.testing.assert_allclose(forces[chosen], own[chosen], rtol=1e-9, atol=1e-6)
 
 
-def test_sizes_and_trials_are_those_of_layers() -> None:
-    case = soil(packing__size=[100.0, 20.0])
-    expected, found = SceneSizes.expected(case), build(case).sizes
-    assert expected.slots == pytest.approx(found.slots, rel=0.01)
-    (trial, *_), words = trials_of_disks(case, full=False)
-    assert "62 × 40 of its 200 × 40 bricks" in words[1]
-    assert trial.scene.case.joints == case.joints
-
-
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """The record of a run."""
@@ -171,12 +158,3 @@ def test_disks_have_their_layer_in_the_record_in_pictures_and_for_paraview(run, 
     assert {float(line.get_ydata()[0]) for line in panel.lines} == {-5.0, -11.0}
     names = {text.get_text(): text.xy[1] for text in panel.texts if text.get_text() in ("clay", "sand", "rock")}
     assert names == {"clay": pytest.approx(0.0), "sand": -5.0, "rock": -11.0}
-
-
-def test_a_page_has_a_table_of_layers(run, tmp_path, monkeypatch) -> None:
-    drawn_quickly(monkeypatch)
-    monkeypatch.setattr(page, "FRAME_DOTS", 30)
-    page.write_report([run], tmp_path / "page.html")
-    row = r'<th scope="row">(\w+)</th><td data-head="run">soil</td><td data-head="y">([^<]+)</td>'
-    rows = re.findall(row, (tmp_path / "page.html").read_text())
-    assert rows == [("clay", "0 to -5 m"), ("sand", "-5 to -11 m"), ("rock", "-11 to -20 m")]

@@ -5,7 +5,6 @@ import pytest
 from small_cases import small
 from warned_cases import DENSE, SLOW, warned
 
-from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import build
 from dembound.kinds.disks.micro_macro import materials_of
 from dembound.kinds.disks.warnings import _s_speed_of_the_packing
@@ -83,17 +82,6 @@ def test_a_steady_load_without_a_static_stage_is_warned_of(bar, settles: bool) -
     static = {"static": {"boundary": {"left": {"type": "fixed"}}}} if settles else {}
     found = [line for line in warned(bar({"load": [weight, tap], **SLOW, **static})) if "load.weight" in line]
     assert [line.split(",")[0] for line in found] == ["load.weight: is steady"] * (not settles)
-
-
-@pytest.mark.parametrize(("ratio", "other"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])
-def test_a_packing_of_another_speed_is_warned_of(bar, monkeypatch, ratio: float, other: bool) -> None:
-    monkeypatch.setattr(PackedMaterial, "wave_speeds", lambda self, axis: (1000.0 * ratio, np.nan))
-    found = [each for each in warned(bar({**SLOW})) if each.startswith("material")]
-
-    assert found == other * [
-        f"material.p_wave_speed: is 1000 m/s of the square lattice; P waves along x run at {1000 * ratio:.4g} m/s in "
-        'this packing; give match = "assembly"'
-    ]
 
 
 def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) -> None:

@@ -2,24 +2,11 @@
 
 import re
 
-import numpy as np
 import pytest
 from warned_cases import DENSE, SLOW, warned
 
-from dembound.disks.scene import build
-from dembound.kinds.disks.wave_warnings import particles_per_wavelength
-from dembound.running import plan
 from dembound.waves.wave import HANN_FADE
 from dembound.words import with_unit
-
-
-def test_particles_per_wavelength_at_the_waves_highest_frequency_and_slowest_speed(bar) -> None:
-    # c_s = c_p/2 = 500 m/s, the Hann lobe fades at 3.27/T, disks are 0.5 m apart
-    for held, speed in ((["rotation"], 1000.0 / np.sqrt(2.0)), ([], 500.0), (["y"], 500.0)):
-        scene = build(bar({"motion.held": held}))
-        found = particles_per_wavelength(scene)
-        assert found == {"pulse": pytest.approx(speed * 0.01 / HANN_FADE / 0.5, rel=1e-9)}
-
 
 TWO_WAYS = {"motion.held": []}
 BREAKABLE = {**SLOW, "material.law": "linearpbond", "material.pb_ten": 5e6}
@@ -145,21 +132,6 @@ def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) ->
         against = f"material.pb_ten, {with_unit(strength, 'Pa')}: Pa and MPa?"
         said = f"load.tap: {what} is {with_unit(stress, 'Pa')}, 0.0099 % of {against}"
         assert warned(bar(BREAKABLE | free | wave | {"load": [TAP | load]})) == weak * [said]
-
-
-@pytest.mark.parametrize(("side", "axis"), [("left", 0), ("bottom", 1)])
-def test_a_wave_is_as_strong_as_its_speed_across_its_side(bar, side: str, axis: int) -> None:
-    moduli = {"density": 2500.0, "law": "linearpbond", "emod": 1.25e9, "pb_emod": 1.25e9, "pb_ten": 1e9}
-    packing = {key: DENSE[key] for key in ("packing", "monitor")}
-    driven = {"boundary": {side: {"type": "viscous_input", "wave_p": "pulse"}}, "motion.held": []}
-    case = bar({**packing, **SLOW, **driven, "material": moduli, "wave.pulse.amplitude": 1e-3})
-    tensor = plan(case).scene.ground.material_tensor
-    speeds = [float(np.sqrt(tensor[each, each] / 2500.0)) for each in (0, 1)]
-
-    # a random brick is not as stiff along x as along y
-    assert abs(speeds[1] / speeds[0] - 1.0) > 1e-3
-    (found,) = (each for each in warned(case) if "stress" in each)
-    assert found.startswith(f"wave.pulse: its stress ρcv is {with_unit(2500.0 * speeds[axis] * 1e-3, 'Pa')}, ")
 
 
 @pytest.mark.parametrize(
