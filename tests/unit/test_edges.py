@@ -9,7 +9,7 @@ from dembound.disks.scene import build
 from dembound.disks.supports import forces_of
 from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
 from dembound.kinds import loads
-from dembound.places import is_within, spans_all
+from dembound.places import is_within
 
 COUNT = 14
 CENTRES = np.stack(np.meshgrid(*2 * [np.arange(1, 2 * COUNT, 2)]), axis=-1).reshape(-1, 2)
@@ -107,19 +107,6 @@ def test_what_lies_on_an_edge_remains(mirror, radius: float, shift) -> None:
     assert on["circle at a disk"] == 12
 
 
-@pytest.mark.parametrize("about", [0.0, 0.7, 1.0 / 3.0])
-def test_mirrored_holes_through_disks_of_random_packings_take_mirrored_disks(about: float) -> None:
-    rng, mirror = np.random.default_rng(3), np.array([-1.0, 1.0])
-    for _ in range(20):
-        places = rng.uniform(-3.0, 9.0, (60, 2))
-        corners, image = places[:5], mirror * places + [2.0 * about, 0.0]
-        one, other = (
-            hole(Polygon, "outside", points=each.tolist()) for each in (corners, mirror * corners + [2.0 * about, 0.0])
-        )
-        np.testing.assert_array_equal(one.takes(places, 12.0), other.takes(image, 12.0))
-        assert not one.takes(places, 12.0)[:5].any()  # its corners
-
-
 @pytest.mark.parametrize("radius", RADII)
 def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) -> None:
     along = placed(np.stack([np.arange(1, 61, 2), np.full(30, 29)], axis=1), radius, 0.0)
@@ -131,19 +118,6 @@ def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) 
         np.testing.assert_array_equal(
             held, np.flatnonzero(is_within((ends[0], 0.0, ends[1], 100.0), along, 60.0 * radius))
         )
-
-
-def test_places_on_the_edge_of_a_box_are_within() -> None:
-    places = np.array([(0.3, 1.0), (0.31, 1.0), (0.3, -0.1), (-0.9, 2.0)])
-    box = (-0.9, 0.0, -0.9 + 1.2, 2.0)  # the sum is 0.29999999999999993
-    assert is_within(box, places, 2.0).tolist() == [True, False, False, True]
-
-
-def test_a_region_spans_a_scene_also_where_its_end_is_rounded() -> None:
-    whole = (0.1, 0.0, 0.1 + 0.2, 1.0)
-    assert spans_all((0.1, 0.2, 0.3, 0.4), whole, 0)
-    assert not spans_all((0.1, 0.2, 0.3, 0.4), whole, 1)
-    assert not spans_all((0.1, 0.2, 0.299, 0.4), whole, 0)
 
 
 CASE = """

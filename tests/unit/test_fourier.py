@@ -45,7 +45,3 @@ def test_smoothing_keeps_a_constant_and_weighs_like_the_window():
     weights = np.where(np.abs(z) < np.pi, np.sinc(z / np.pi) ** 4, 0.0)
     expected = [*(weights[:, 999] / weights.sum(axis=1)), 0.0]
     np.testing.assert_allclose(smoothed(frequency, single, at), expected, rtol=1e-12, atol=1e-15)
-
-
-def test_where_frequencies_are_sparse_they_are_interpolated():
-    assert smoothed(np.arange(5.0), np.arange(5.0) ** 2, np.array([0.5])) == pytest.approx([0.5])

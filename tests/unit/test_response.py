@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound import spectra
-from dembound.spectra import FINER, relative_displacement, response_spectrum, slope, usual_periods
+from dembound.spectra import FINER, relative_displacement, response_spectrum, slope
 
 OMEGA, DAMPING, STEP = 2.0 * np.pi / 0.5, 0.05, 0.01
 
@@ -40,13 +40,6 @@ def test_the_spectrum_is_the_largest_response_also_after_the_record():
     assert found.period == pytest.approx(periods)
     assert found.pseudo_velocity == pytest.approx(2.0 * np.pi / 20.0 * found.displacement)
     assert found.pseudo_acceleration == pytest.approx((2.0 * np.pi / 20.0) ** 2 * found.displacement)
-
-
-def test_usual_periods_are_from_eight_samples_to_the_record_or_to_ten_seconds():
-    periods = usual_periods(1000, STEP)
-    assert (periods[0], periods[-1]) == pytest.approx((8 * STEP, 1000 * STEP))
-    assert usual_periods(100_000, STEP)[-1] == pytest.approx(10.0)
-    assert usual_periods(1000, 2.0)[-1] == pytest.approx(160.0)  # else they would run backwards
 
 
 def test_short_periods_are_those_of_a_finer_record(monkeypatch):

@@ -100,14 +100,6 @@ def test_a_bar_comes_off_an_end_where_its_node_is_the_first_to_crack(bonds, plan
     assert breaks_at_ends([spall], {}) == {}
 
 
-def test_springs_count_as_well() -> None:
-    bonds = Bonds(ROD, 0)
-    bonds.spring[12], bonds.spring_broken[12] = 0.0, 4
-
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert spall.start == (PLACES[12], PLACES[13])
-
-
 def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
     assert spalls(tough, PLACES, STEP) == []
     opened(tough, 20, step=5)
@@ -125,12 +117,3 @@ def test_open_planes_within_a_horizon_are_one_spall(tough) -> None:
         ((PLACES[30], PLACES[31]), (PLACES[30], PLACES[31])),
         ((PLACES[23], PLACES[24]), (PLACES[20], PLACES[24])),
     ]
-
-
-def test_damage_counts_what_is_left_of_opening_bonds(tough) -> None:
-    opened(tough, 20, step=5)
-    tough.bond[tough.bond_broken >= 0] = 1.0
-    tough.bond_broken[tough.bond_broken >= 0] = OPENING
-    tough.opening.bundle.furthest[: len(tough.opening)] = 1e-3 + 0.4 * 9e-3
-    # 0.4 of the half of its family that node 20 would lose
-    assert tough.damage()[20] == pytest.approx(0.2, rel=1e-12)

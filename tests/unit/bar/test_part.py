@@ -82,21 +82,6 @@ def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(simulation, 
         assert not cracks.shear.any()
 
 
-def test_laws_are_reported_with_the_step_of_the_change(simulation) -> None:
-    for kind, name in (("switch", "peridynamics, m = 3"), ("patch", "finite differences and peridynamics, m = 3")):
-        run = simulation(method=METHODS[kind])
-        run.advance(70)
-        (first, zero), (second, step) = run.state.laws
-        assert (first, zero, second) == ("finite differences", 0, name)
-        # at that step, not before, some spring has come to 0.9 of the critical stretch
-        again = simulation(method=METHODS["finite_difference"])
-        limit = 0.9 * 8e6 / 2.5e9 * 0.025
-        again.advance(step - 1)
-        assert np.diff(again.state.displacement[0]).max() < limit
-        again.advance(1)
-        assert np.diff(again.state.displacement[0]).max() >= limit
-
-
 @pytest.mark.parametrize("kind", ["peridynamics", "patch"])
 def test_a_bar_has_blown_up_when_it_swings_beyond_what_a_step_can_follow(simulation, kind: str) -> None:
     swing, slow = np.zeros((2, 3, 41))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from dembound.bar.scene import build_bar
-from dembound.exact.dispersion import courant_limit
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -64,24 +63,3 @@ def test_ends_stand_for_more_of_the_bar(spalling) -> None:
     assert attenuated.case.bar.drag_rate == pytest.approx(1000.0, rel=4 * EPS)
     expected = matched + 1000.0 * attenuated.mass[-1]
     assert attenuated.supports.damping.tolist() == pytest.approx([expected], rel=8 * EPS)
-
-
-METHODS = {
-    "finite_difference": ({"type": "finite_difference"}, 1.0),
-    "peridynamics": ({"type": "peridynamics", "horizon": 3}, courant_limit(3)),
-    "patch": ({"type": "patch", "horizon": 3}, 1.0),
-}
-
-
-@pytest.mark.parametrize(("method", "courant"), METHODS.values(), ids=METHODS.keys())
-def test_the_limit_is_that_of_the_stage_that_is_least_stable(spalling, method: dict, courant: float) -> None:
-    scene = build_bar(spalling({"method": method}))
-    limit = scene.step_limit()
-    stages = [scene.stable_step(bonds) for bonds in scene.case.method.stages(scene.rod)]
-
-    assert limit == min(stages)
-    for bonds, stable in zip(scene.case.method.stages(scene.rod), stages, strict=True):
-        assert scene.is_stable(bonds, limit * (1.0 - 1e-12))
-        assert not scene.is_stable(bonds, stable * (1.0 + 1e-12))
-    # that of an endless bar, but for ends 41 nodes apart: ¼(π/40)² at most
-    assert limit * 1000.0 / 0.025 == pytest.approx(courant, rel=0.25 * (np.pi / 40) ** 2)

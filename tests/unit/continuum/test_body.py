@@ -22,17 +22,6 @@ def test_mass_is_that_of_the_medium_and_what_is_added(grid) -> None:
     np.testing.assert_allclose(grid(thickness=2.0).mass, 2.0 * body.mass)
 
 
-def test_mass_of_layers() -> None:
-    """Two columns of three elements of 3 × 2 m; the upper two rows are soil. Nodes on the joint have a mean density."""
-    mesh = Mesh.uniform(order=3, element=(3.0, 2.0), cells=(2, 3))
-    body = GridBody(mesh=mesh, medium=Layered((ROCK, SOIL), (2.0,)), thickness=2.0)
-    y = mesh.positions[:, 1]
-
-    assert body.mass.sum() == pytest.approx(2.0 * 6.0 * (2.0 * 2500.0 + 4.0 * 1800.0))
-    for there, density in ((y < 1.9, 2500.0), (np.abs(y - 2.0) < 0.1, 2150.0), (y > 2.1, 1800.0)):
-        np.testing.assert_allclose(body.mass[there], 2.0 * density * mesh.areas[there])
-
-
 def test_a_joint_inside_elements_is_refused() -> None:
     mesh = Mesh.uniform(order=3, element=(3.0, 2.0), cells=(2, 3))
     GridBody(mesh=mesh, medium=Layered((ROCK, SOIL), (7.0,)))  # above the mesh
@@ -51,18 +40,6 @@ def test_layers_of_one_medium_have_the_forces_of_that_medium(grid) -> None:
         body.fill_forces(moved, force)
         forces.append(force[:, body.blocks.slot])
     np.testing.assert_allclose(forces[1], forces[0], atol=1e-12 * np.abs(forces[0]).max())
-
-
-def test_the_absorbing_layer_has_the_fastest_speed_in_it(grid) -> None:
-    ground = Layered((SOIL, ROCK), (0.0,))
-    body, uniform = grid(medium=ground), grid(medium=SOIL)
-
-    left, bottom = body.profile("left"), body.profile("bottom")
-    assert left is not None
-    assert left.speed == ROCK.normal_speed(0)
-    assert left.guides
-    assert bottom == uniform.profile("bottom")
-    assert body.profile("top") is None
 
 
 def dense_limit(body: GridBody, delay: float) -> float:

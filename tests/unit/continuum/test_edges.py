@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried, stepped
+from meshes import ORDER, below, buried
 
-from dembound.continuum.edges import edge_lengths, elements_at, free_edges, nodes_at
+from dembound.continuum.edges import edge_lengths, free_edges
 from dembound.continuum.mesh import Around, Mesh
 
 
@@ -35,26 +35,3 @@ def test_the_surface_is_what_is_free_beyond_the_box() -> None:
         order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(bottom=1)
     )
     assert (free_edges(round_a_pipe)[:, [1, 3]] == 2.0).all()
-
-
-def test_the_top_is_where_each_column_ends() -> None:
-    mesh = stepped()
-    lengths = edge_lengths(mesh, "top")
-    y = mesh.positions[:, 1]
-
-    assert lengths[y == 3.0].sum() == pytest.approx(9.0, rel=1e-13)
-    assert lengths[y == 5.0].sum() == pytest.approx(6.0, rel=1e-13)
-    assert lengths.sum() == pytest.approx(15.0, rel=1e-13)
-    ends = {tuple(line) for line in free_edges(mesh).tolist()}
-    assert ends == {(x, 3.0, x + 3.0, 3.0) for x in (-9.0, -6.0, -3.0)} | {(x, 5.0, x + 3.0, 5.0) for x in (6.0, 9.0)}
-
-
-@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
-def test_nodes_lie_along_the_side_in_order(side: str) -> None:
-    mesh = stepped()
-    axis = 0 if side in ("left", "right") else 1
-    nodes, rectangles = nodes_at(mesh, side), mesh.rectangles[elements_at(mesh, side)]
-    level = rectangles[:, axis + 2 * (side in ("right", "top"))]
-
-    assert (mesh.positions[nodes, axis] == level[:, None]).all()
-    assert (np.diff(mesh.positions[nodes, 1 - axis], axis=1) > 0.0).all()

@@ -24,15 +24,6 @@ def test_the_quadrature_is_exact_up_to_degree_2p_minus_1(order: int) -> None:
 
 
 @EACH
-def test_derivatives_of_powers(order: int) -> None:
-    rule = Rule(order)
-    for degree in range(order + 1):
-        found = rule.derivative @ rule.points**degree
-        # entries up to p(p + 1)/4 = 10, sums of seven terms
-        np.testing.assert_allclose(found, degree * rule.points ** max(degree - 1, 0), rtol=0.0, atol=1e-13)
-
-
-@EACH
 def test_shapes_interpolate_and_extrapolate_polynomials(order: int) -> None:
     rule, x = Rule(order), np.array([-1.3, -1.0, 0.123, 1.0, 1.2])
     # Lagrange polynomials grow to some 1.3^p beyond the ends

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from meshes import buried, one_across, stepped, uneven
+from meshes import buried, stepped, uneven
 
 from dembound.continuum.interpolation import interpolation, located, slopes
-from dembound.continuum.mesh import Mesh
 
 
 def test_a_polynomial_and_its_slopes_are_interpolated_and_extrapolated() -> None:
@@ -48,21 +47,6 @@ def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -
     np.testing.assert_array_equal(located(mesh, points)[0], nearest)
     on_edges = located(mesh, np.array([[1.5, 1.0], [3.0, 5.0], [7.0, 6.0], [5.0, 7.0]]))[0]
     np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
-
-
-def test_slopes_in_the_element_that_closes_a_period() -> None:
-    mesh = Mesh.uniform(order=3, element=(1.5, 1.0), cells=(4, 2), periodic=(True, False))
-    point = np.array([[5.7, 0.3]])  # of the last column, whose right nodes are those of the first one
-    local = mesh.rule.slope(np.array([0.6]))[0] / 0.75
-
-    np.testing.assert_allclose(slopes(mesh, point)[0].reshape(4, 4).sum(axis=0), local, rtol=1e-12)
-
-
-def test_points_beyond_a_periodic_side_have_places_within_it() -> None:
-    mesh = one_across()
-    element, place = located(mesh, np.array([[-1.0, -1.0], [7.0, 0.5]]))
-    assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
-    np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
 
 
 def test_points_above_a_lower_surface_belong_to_the_highest_element_below() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.continuum.medium import Layered, Medium, layered
+from dembound.continuum.medium import Layered, Medium
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 
@@ -16,15 +16,6 @@ def test_isotropic_speeds_do_not_depend_on_the_direction(degrees: float) -> None
     np.testing.assert_allclose(speeds, [600.0, 1000.0], rtol=1e-12)
     assert abs(polarisations[:, 1] @ direction) == pytest.approx(1.0)
     assert abs(polarisations[:, 0] @ direction) < 1e-12
-
-
-def test_speeds_along_the_axes() -> None:
-    rock = Medium(2000.0, c11=8e9, c22=6e9, c12=2e9, c66=1e9)
-
-    np.testing.assert_allclose(rock.plane_waves((1.0, 0.0))[0], np.sqrt([1e9 / 2000, 8e9 / 2000]))
-    np.testing.assert_allclose(rock.plane_waves((0.0, 1.0))[0], np.sqrt([1e9 / 2000, 6e9 / 2000]))
-    assert rock.normal_speed(0) == pytest.approx(np.sqrt(4e6))
-    assert rock.normal_speed(1) == pytest.approx(np.sqrt(3e6))
 
 
 def test_a_rotated_medium_has_rotated_waves() -> None:
@@ -40,24 +31,6 @@ def test_a_rotated_medium_has_rotated_waves() -> None:
     np.testing.assert_allclose(turned.plane_waves((-s, c))[0], plain.plane_waves((0.0, 1.0))[0], rtol=1e-12)
     np.testing.assert_allclose(turned.matrix, m, rtol=1e-12)
     assert turned.moduli.tolist() == [m[0, 0], m[1, 1], m[0, 1], m[2, 2], m[0, 2], m[1, 2]]
-
-
-def test_layers_at_heights() -> None:
-    soil = Medium.isotropic(1800.0, 400.0, 200.0)
-    ground = Layered((ROCK, soil, ROCK), (10.0, 20.0))
-
-    assert ground.number_at(np.array([-5.0, 10.0, 10.1, 20.0, 99.0])).tolist() == [
-        0,
-        0,
-        1,
-        1,
-        2,
-    ]  # the lower on a joint
-    assert (ground.at(15.0), ground.at(10.0)) == (soil, ROCK)
-    assert layered(ground) is ground
-    assert layered(soil).only == soil
-    with pytest.raises(ValueError, match="needs one medium, not 3 layers"):
-        assert ground.only
 
 
 @pytest.mark.parametrize("joints", [(10.0,), (20.0, 10.0)])

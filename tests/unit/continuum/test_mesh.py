@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried, one_across, stepped, uneven
+from meshes import ORDER, buried, stepped, uneven
 
 from dembound.continuum.edges import free_edges
 from dembound.continuum.mesh import NONE, Around, Mesh
@@ -22,14 +22,6 @@ def test_the_box_is_left_out() -> None:
     assert on_sides.sum() == 2 * (2 * ORDER + 1) + 2 * (ORDER + 1) - 4
     # without the inner nodes of two elements and of the edge between them
     assert mesh.count == (8 * ORDER + 1) * (5 * ORDER + 1) - (2 * ORDER - 1) * (ORDER - 1)
-
-
-@pytest.mark.parametrize("right", [1, 3])
-def test_the_outer_edge_is_held_for_any_size_of_element(right: int) -> None:
-    """Sizes that binary numbers do not have."""
-    mesh = Mesh.uniform(order=5, element=(0.1, 0.7), cells=(7, 3), layer=Around(0, right, 0, 0), origin=(0.3, 0.0))
-
-    assert mesh.held.sum() == 3 * 5 + 1
 
 
 def test_a_periodic_mesh_has_no_last_line() -> None:
@@ -85,21 +77,6 @@ def test_elements_round_a_box_divide_its_sides() -> None:
     assert mesh.cells == (3, 3)
 
 
-def test_rows_above_a_box_reach_the_free_surface() -> None:
-    """2.3 m above it: two rows of 1.15 m, as those of the box are 2 m high; layers only at the other sides."""
-    arguments = dict(margin=Around(1, 1, 2, 0), layer=Around(1, 1, 1, 0))
-    mesh = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-0.7, **arguments)
-
-    assert mesh.heights[:5] == (2.0,) * 5
-    np.testing.assert_allclose(mesh.heights[5:], [1.15, 1.15], rtol=1e-15)
-    assert mesh.box == (2, 3, 4, 5)
-    assert mesh.positions[:, 1].max() == pytest.approx(-0.7, abs=1e-14)
-    assert not mesh.held[mesh.positions[:, 1] > -0.8].all()
-    # at the surface the box is as without one
-    at_top = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-3.0, **arguments)
-    assert at_top.heights == Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), **arguments).heights
-
-
 def test_columns_beside_the_box_end_at_their_own_levels() -> None:
     """3 m and 5 m above the lower side of the box, at the ends of its rows; the layers end there, too."""
     mesh = stepped()
@@ -117,14 +94,6 @@ def test_columns_beside_the_box_end_at_their_own_levels() -> None:
     ]
 
 
-def test_what_lies_between_the_layers() -> None:
-    low, high = buried().between_layers
-
-    np.testing.assert_allclose([*low, *high], [7.0, 18.0, 22.0, 24.0], rtol=1e-14)
-    low, high = below().between_layers
-    np.testing.assert_allclose([*low, *high], [-3.0, -2.0, 9.0, 2.0], rtol=1e-14)
-
-
 def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
     """Their nodes but for those on held edges are known."""
     margin, layer = Around(right=1, bottom=1), Around(right=1, bottom=1)
@@ -134,18 +103,6 @@ def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
     np.testing.assert_array_equal(mesh.on_mirrors(0), np.flatnonzero((x == 0.0) & (y > -4.0)))
     assert len(mesh.on_mirrors(1)) == 0
     assert {tuple(line) for line in free_edges(mesh).tolist()} == {(6.0, 2.0, 9.0, 2.0), (9.0, 2.0, 12.0, 2.0)}
-
-
-def test_one_element_across_has_itself_as_its_neighbour() -> None:
-    mesh = one_across()
-    assert mesh.count == ORDER * (3 * ORDER + 1)
-    assert (mesh.nodes[:, :, 0] == mesh.nodes[:, :, -1]).all()
-    assert mesh.areas.sum() == pytest.approx(6.0 * 6.0)
-    assert mesh.sides == (0.0, 6.0, 0.0, 4.0)
-    # cells across the side are left out
-    corners = mesh.positions[mesh.node_cells]
-    assert len(corners) == 3 * ORDER * (ORDER - 1)
-    assert (corners[:, 2] > corners[:, 0]).all()
 
 
 SMALL = {"order": 3, "element": (1.0, 1.0), "cells": (4, 3)}

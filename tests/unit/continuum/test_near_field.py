@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 from dembound.continuum.interpolation import FORCES, HOLES, PASSED, TIES, WIDER, NearField
@@ -47,12 +46,3 @@ def test_beside_a_hole_that_waves_pass_it_is_the_part_of_the_motion_that_the_hol
     assert passed._replace(wave_number=0.0).largest_side(4, 1e-3) == math.inf
     assert passed.of_ties(1.0) == 0.0 == passed._replace(source="force").of_ties(1.0)
     assert blast().of_ties(0.5) == pytest.approx(TIES / 64.0)
-
-
-def test_errors_of_a_blast_are_largest_at_the_elements() -> None:
-    """With the square of the distance inside, and less beyond; other fields are alike at all places."""
-    places = [np.array([4.0, y]) for y in (0.0, 3.0, 4.0, 7.0)]  # 1, 3, 4 and 7 m from what is in the hole
-    assert [blast().part_at(place) for place in places] == pytest.approx([1 / 16, 9 / 16, 1.0, (4 / 7) ** 4])
-    assert blast().part_at(np.array([-5.0, 2.5])) == 1.0
-    assert [blast()._replace(source=each).part_at(places[0]) for each in ("force", "waves")] == [1.0, 1.0]
-    assert math.isfinite(NearField((0.0, 0.0, 0.0, 0.0), 1.0, "pressure").part_at(np.zeros(2)))

@@ -6,8 +6,7 @@ from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.continuum.medium import Layered, Medium
-from dembound.continuum.mesh import Mesh
-from dembound.continuum.part import GridBody, GridPart, stress
+from dembound.continuum.part import GridPart, stress
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
@@ -63,18 +62,6 @@ def test_stress_at_a_kink_is_the_mean_by_area(grid) -> None:
 
     expected = body.medium.matrix[:, 0] * (3.0 * 1e-4 + 2.5 * 5e-4) / 5.5
     np.testing.assert_allclose(found, np.tile(expected, (len(found), 1)), rtol=1e-11)
-
-
-def test_stress_of_layers_is_that_of_each_medium() -> None:
-    mesh = Mesh.uniform(order=4, element=(3.0, 2.0), cells=(2, 2))
-    rock = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9)
-    body = GridBody(mesh=mesh, medium=Layered((rock, SOIL), (2.0,)))
-    x, y = mesh.positions.T
-    found = stress(body, np.stack([1e-4 * x, np.zeros_like(x)]))
-
-    for there, c11, c12 in ((y < 1.9, 9e9, 2e9), (y > 2.1, 2e9, 1e9), (np.abs(y - 2.0) < 0.1, 5.5e9, 1.5e9)):
-        np.testing.assert_allclose(found[there, 0], 1e-4 * c11)
-        np.testing.assert_allclose(found[there, 1], 1e-4 * c12)
 
 
 def test_supports_that_cannot_be_accounted_for_are_refused(grid) -> None:

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from disk_systems import BODY, FREE_FIELD, STEP, shaken
+from disk_systems import BODY, FREE_FIELD, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build, column_alone
 from dembound.disks.stepping.scene_parts import contact_lists
-from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
 from dembound.motion.part import joined
 
@@ -32,55 +31,10 @@ def scene(bar, in_order):
     return make
 
 
-@pytest.fixture(params=PACKINGS)
-def beside(scene, request) -> DiskSystem:
-    """Column and body."""
-    return DiskSystem(scene(request.param), STEP)
-
-
-def seam_ends(beside: DiskSystem) -> np.ndarray:
-    """Contact ends of the column's pairs at which it pushes the body across the seam."""
-    (tie,) = beside.ties
-    return tie.ends(beside.contacts["column"])
-
-
 def both(lists: dict[str, ContactList], name: str) -> np.ndarray:
     """A column of the pairs of column and body."""
     each = [contacts.force if name == "force" else contacts.of(name) for contacts in lists.values()]
     return np.concatenate(each)
-
-
-def check_ends(beside: DiskSystem) -> None:
-    """Every end is the twin's, at a pair with the neighbour that the seam names, along the brick's own vector."""
-    seam, pairs, ends = beside.scene.seam, beside.contacts["column"].arrays, seam_ends(beside)
-    twin, pair, side = np.repeat(seam.twin[seam.node], seam.contact_counts), ends >> 1, ends & 1
-    disks = np.stack([pairs.first, pairs.second])[:, pair].astype(np.int64)
-    column = np.arange(len(ends))
-
-    assert len(ends) == len(seam.neighbour)
-    assert np.array_equal(disks[side, column], twin)
-    assert np.array_equal(disks[1 - side, column], seam.neighbour)
-    outward = np.where(side, -1.0, 1.0)[:, None] * pairs.constants[pairs.contact_type[pair], :2]
-    brick = beside.scene.ground.brick
-    expected = np.where(seam.twin_is_second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.contact_type]
-    assert np.array_equal(outward, expected)
-
-
-def test_a_search_moves_the_ends_and_keeps_them_right(beside: DiskSystem) -> None:
-    assert [contacts.periods for contacts in beside.contacts.values()] == [
-        (beside.scene.seam.width, None),
-        (None, None),
-    ]
-    check_ends(beside)
-    before = seam_ends(beside)
-    moved = shaken(beside.scene, 0.3)
-    for contacts in beside.contacts.values():
-        contacts.arrays.state[::2] = TENSION  # so that pairs go as well as come
-        contacts.search(moved)
-        assert np.array_equal(contacts.origin, moved[:2, contacts.nodes])
-
-    assert not np.array_equal(seam_ends(beside), before)
-    check_ends(beside)
 
 
 def keyed(ground: DiskScene, width: float, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> list[tuple]:

@@ -131,18 +131,6 @@ def test_an_outline_that_is_not_a_wall_is_refused(hole: dict, changes: dict, lin
     assert found.startswith(line)
 
 
-def test_a_pressure_that_follows_a_wave_drives_forces_and_moments() -> None:
-    flat = {"wave": {"flat": {"type": "constant", "amplitude": 3.0}}}
-    steady = pressed(LATTICE, CIRCLE)
-    driven = pressed(LATTICE, CIRCLE, {**flat, "load.p.wave": "flat"})
-    table, force = driven.supports, np.zeros((3, driven.count))
-    np.add.at(force, (table.component, table.node), table.sample(np.array([1.0]), 0.0)[0])
-
-    assert not driven.steady_load.any()
-    np.testing.assert_allclose(force, 3.0 * steady.steady_load, rtol=1e-12)
-    assert np.abs(force[2]).max() > 0.0
-
-
 @pytest.mark.parametrize(("x", "is_near"), [(2.7, True), (2.9, False), (9.3, True)])
 def test_a_hole_that_cuts_bonds_across_a_periodic_side_is_refused(x: float, is_near: bool) -> None:
     """Radius 2.3 m, disks of 0.5 m: less than a bond from the side, where forces would not be in balance."""

@@ -4,10 +4,8 @@ import pytest
 from disk_systems import LAMB
 from small_cases import SURROUNDED, small
 
-from dembound.disks.contacts import layout
-from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, scene_bytes
+from dembound.disks.memory import SceneSizes, expected_bytes
 from dembound.disks.scene import build
-from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.motion import memory
@@ -37,44 +35,6 @@ def test_sizes_are_known_before_the_scene_is_built(scene) -> None:
     assert expected.slots / expected.disks == pytest.approx(sizes.slots / sizes.disks, rel=0.15)
     assert expected.contacts / expected.disks == pytest.approx(sizes.contacts / sizes.disks, rel=0.17)
     assert expected.in_rows == sizes.in_rows
-
-
-@pytest.mark.parametrize("in_rows", [True, False])
-def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
-    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
-    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}}))
-    body, rows, places = scene.assembly, scene.rows[0], scene.layout
-    arrays = [body.positions, body.radii, body.brick_particle, body.tile, body.pairs, body.contact_type, places.slot]
-    arrays += [scene.mass, scene.inertia, scene.cell_fraction]
-    arrays += [places.node] if in_rows else [rows.start, rows.neighbour, rows.contact_type]
-
-    # rows that are shared by all copies, 40 times as few, are not counted
-    assert scene_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    "more", [{}, {"pb_ten": 1e6, "pb_scatter": {"type": "weibull", "shape": 5.0}, "dp_nratio": 0.1}]
-)
-@pytest.mark.parametrize("in_rows", [True, False])
-def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows, more) -> None:
-    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
-    material = {f"material.{key}": value for key, value in {"law": "linearpbond", **more}.items()}
-    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, **material}))
-    (pairs,) = contact_lists(scene).values()
-    kept, stored = (
-        pairs.arrays,
-        ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "force"),
-    )
-    arrays = [getattr(kept, name) for name in stored] + [kept.start, kept.end, pairs.live, pairs.image]
-    arrays += [pairs.arms, pairs.origin, pairs.cells.member]
-    if in_rows:
-        plan = pairs._plan.plan
-        arrays += [plan.row, plan.column, plan.lane]
-    if more:
-        arrays += [pairs.limits.factor, pairs.factors.tile, pairs.viscosity, pairs.drag, pairs.dashpots.mass]
-
-    # numbers of listed pairs differ between bricks
-    assert pairs_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
 
 
 def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:

@@ -1,15 +1,12 @@
 """A scene of a box of disks in the ground: its column, its continua, and what is refused."""
 
-import numpy as np
 import pytest
 from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
-from dembound.disks.rest.settled import settling_keys
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError
-from dembound.kinds import with_changes
 
 BOX: Tables = GROUND | {
     "ground": {"size": [40.0, 30.0]},
@@ -41,15 +38,6 @@ def shaken() -> DiskScene:
     return scene(WAVE)
 
 
-def test_the_column_is_as_high_as_the_ground(shaken: DiskScene) -> None:
-    assert shaken.case.column_rows == (1, 5)
-    assert shaken.assembly.column.copies == (1, 5)
-    first = shaken.seam.count
-    below, above = shaken.assembly.positions[first:, 1], shaken.assembly.positions[shaken.seam.twin[first:], 1]
-    np.testing.assert_allclose(below, above, rtol=0.0, atol=1e-12)
-    assert with_changes(shaken.case, {"packing.origin": [14.0, 12.0]}).column_rows[0] == 2
-
-
 def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) -> None:
     mesh = shaken.outside.body.mesh
     offset = shaken.ground.brick.mass_offset
@@ -79,16 +67,3 @@ def test_between_box_and_surface_there_is_room_for_an_element() -> None:
     up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
     lattice["packing"]["origin"] = [14.0, 18.0]
     assert scene(lattice, {"boundary": up_to_it}).outside.count > 0
-
-
-def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
-    """A continuum beside a column settles; one beside a periodic body is left out of the stage."""
-
-    def keys(*changes: dict) -> dict:
-        return settling_keys(scene(WEIGHT, *changes))
-
-    assert keys({"outside.damping": 0.2}) != keys() != keys({"outside.layers": 5})
-    assert keys(WAVE) == keys()  # elements of a given size
-    endless = {"ground": {}, "packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0]}}
-    endless["boundary"] = {side: {"type": "periodic"} for side in ("left", "right")} | {"bottom": {"type": "outside"}}
-    assert keys(endless) == keys(endless, {"outside.layers": 5})

@@ -8,7 +8,7 @@ from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
 from dembound.disks.trials import PARTICLES, UNLOADED
-from dembound.kinds import kind_of, with_changes
+from dembound.kinds import kind_of
 
 
 def trials(case, **options):
@@ -92,16 +92,6 @@ def test_springs_of_a_copy_are_the_stiffest_of_the_whole_side(bar) -> None:
     # disks of the side are within its width of half a diameter of it, 0.25 m of 50 m
     assert stiffness[0].max() == pytest.approx(stiffness[1].max(), rel=0.01)
     assert len(np.unique(np.round(stiffness[0] / stiffness[0].max(), 9))) < len(np.unique(stiffness[1]))
-
-
-def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> None:
-    """As the ledger of this law has the energies of all parts, noise is then put into the body."""
-    linear = small(SURROUNDED, "surrounded")
-    (trial,), words = trials(linear)
-    assert words[0] == "12 m × 6 m, 72 disks and 741 nodes of a continuum"
-    assert list(trial.parts) == ["body", "continuum"]
-    full = with_changes(linear, {"material.law": "linearpbond"})
-    assert [list(each.parts) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
 
 
 @pytest.mark.parametrize(

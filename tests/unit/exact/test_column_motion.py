@@ -17,10 +17,6 @@ def pulse(t: np.ndarray) -> np.ndarray:
     return np.asarray((1.0 - 2.0 * power) * np.exp(-power))
 
 
-def relative(frequency: np.ndarray) -> np.ndarray:
-    return UNRELAXED * (1.0 - np.sum(WEIGHTS / (1.0 + 2j * np.pi * frequency[..., None] * TIMES), axis=-1))
-
-
 def motion(modulus=None, until: float = 3.0) -> ColumnMotion:
     """Of two layers, maybe with a modulus of their own, on an elastic half-space."""
     two = [Layer(*each, relative=modulus) for each in zip(THICKNESSES, DENSITIES[:2], SPEEDS[:2], strict=True)]
@@ -52,40 +48,6 @@ def test_elastic_layers_move_as_by_scattering_at_interfaces() -> None:
     moved = np.diff(column.at("displacement", times, depths), axis=0) / times[1]
     between = column.at("velocity", times[1:] - 0.5 * times[1], depths)
     assert np.abs(moved - between).max() < 1e-4 * np.abs(expected).max()  # the differences err by (ω Δt)²/24
-
-
-def stepped(cells: int, until: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (k,) and displacements (k,) of the surface by finite differences, so many cells to 10 m, with memories."""
-    size = 10.0 / cells
-    layer = np.repeat([0, 1], [3 * cells, 4 * cells])
-    density, modulus = np.array(DENSITIES)[layer], UNRELAXED * (np.multiply(DENSITIES, np.square(SPEEDS)))[layer]
-    mass = 0.5 * size * (np.append(density, 0.0) + np.append(0.0, density))
-    step = 0.4 * size / 400.0
-    dashpot = DENSITIES[2] * SPEEDS[2]
-    e = np.exp(-step / TIMES)
-    g = 0.5 * WEIGHTS * (1.0 - e)
-    u, before = np.zeros(len(mass)), np.zeros(len(mass))
-    strain, memory, found = np.zeros(len(layer)), np.zeros((3, len(layer))), [0.0]
-    implicit = np.zeros(len(mass))
-    implicit[-1] = 0.5 * step * dashpot / mass[-1]
-    for time in step * np.arange(round(until / step)):
-        last, strain = strain, np.diff(u) / size
-        memory = e[:, None] * memory + g[:, None] * (strain + last)
-        stress = modulus * (strain - memory.sum(axis=0))
-        force = np.append(stress, 0.0) - np.append(0.0, stress)
-        force[-1] += 2.0 * dashpot * pulse(time)
-        ahead = (2.0 * u - (1.0 - implicit) * before + step**2 * force / mass) / (1.0 + implicit)
-        before, u = u, ahead
-        found.append(float(u[0]))
-    return step * np.arange(len(found)), np.array(found)
-
-
-def test_damped_layers_move_as_by_finite_differences() -> None:
-    """Whose errors of second order are extrapolated."""
-    (times, coarse), (_, fine) = stepped(8, 2.0), stepped(16, 2.0)
-    expected = (4.0 * fine[::2] - coarse) / 3.0
-    found = motion(relative).at("displacement", times, (0.0,))[:, 0]
-    assert np.abs(found - expected).max() < 1e-5 * np.abs(expected).max()
 
 
 def test_times_after_the_last_one_continue_the_motion() -> None:

@@ -33,23 +33,6 @@ def test_frequency_solves_the_printed_equation(horizon: int, share: float) -> No
     )
 
 
-def test_units_are_those_of_spacing_step_and_speed() -> None:
-    small = Lattice(3, spacing=0.005, time_step=1e-6, wave_speed=2763.0)
-    phase = np.array([0.0, 0.3, 2.0])
-    plain = lattice(3, small.courant)
-    assert small.courant == pytest.approx(0.5526, rel=1e-15)
-    np.testing.assert_allclose(small.frequency(phase / 0.005), plain.frequency(phase) * 2763.0 / 0.005, rtol=1e-14)
-    np.testing.assert_allclose(small.group_velocity(phase / 0.005), plain.group_velocity(phase) * 2763.0, rtol=1e-14)
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-def test_nothing_cancels_in_very_long_waves(horizon: int) -> None:
-    phase = np.array([0.0, 1e-12, 1e-8]) / horizon  # there L's cosines differ from 1 by rounding only
-    # dispersion itself is (mθ)²/24 < 1e-17
-    np.testing.assert_allclose(lattice(horizon, 0.5).frequency(phase), phase, rtol=1e-14)
-    np.testing.assert_allclose(lattice(horizon, 0.5).group_velocity(phase), 1.0, rtol=1e-14)
-
-
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_group_velocity_is_the_slope_of_the_frequency(horizon: int) -> None:
     speeds = lattice(horizon, 0.9 * courant_limit(horizon))
@@ -110,16 +93,6 @@ def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
     assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(
         cells_per_wavelength(horizon, courant), rel=1e-10
     )
-
-
-def test_bonds_of_two_spacings_alone_are_a_bar_of_twice_the_spacing() -> None:
-    double, single = Lattice(2, 1.0, 1.5, 1.0, (0.0, 1.0)), Lattice(1, 2.0, 1.5, 1.0)
-    wavenumber = np.linspace(0.0, 1.5, 50)
-
-    # its waves of four spacings are the first to grow, not those of two
-    assert double.courant_limit == pytest.approx(2.0, rel=1e-12)
-    np.testing.assert_allclose(double.frequency(wavenumber), single.frequency(wavenumber), rtol=1e-14)
-    np.testing.assert_allclose(double.group_velocity(wavenumber), single.group_velocity(wavenumber), rtol=1e-12)
 
 
 def test_what_makes_no_sense_is_refused() -> None:

@@ -40,13 +40,6 @@ def test_response_is_the_convolution_for_any_window_and_before_t_0(window: float
     np.testing.assert_allclose(double[0], 2.0 * expected(times), rtol=0.0, atol=1e-7 * double[0].max())
 
 
-def test_what_is_known_otherwise_is_added_and_counts_for_the_tolerance() -> None:
-    times = np.linspace(0.0, 2.0, 5)
-    alone, _ = respond(decay, pulse, times, 1e-6, [0.0, 0.0])
-    together, _ = respond(decay, pulse, times, 1e-6, [0.0, 0.0], known=[np.ones(5), np.ones((2, 5))])
-    np.testing.assert_allclose(together, alone + 1.0, rtol=0.0, atol=1e-6)
-
-
 def late(s: np.ndarray) -> list[np.ndarray]:
     """A delay alone."""
     return [np.exp(-s * DELAY)]

@@ -74,12 +74,3 @@ def test_the_slack_of_one_pair_by_hand() -> None:
         (two(-0.1, -0.3), one_pair(INTACT, overlap=1.0), shorn, (0.4 + 0.09 - 0.15) / 1.4),
     ):
         assert slack(moved, pair, limits._replace(**changes), False) == pytest.approx(room, rel=1e-12)
-
-
-def test_a_pair_that_turns_leaves_small_displacements() -> None:
-    pair = one_pair(overlap=10.0)
-    limits = UNBREAKABLE._replace(friction=100.0)
-    distance = pair.constants[0, 2]
-    assert slack(two(0.0, 0.004 * distance), pair, limits, False) == pytest.approx(0.006 * distance, rel=1e-9)
-    assert slack(two(0.0, -0.011 * distance), pair, limits, False) < 0.0
-    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED), False) > 0.0

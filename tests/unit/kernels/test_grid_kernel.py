@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from grid_scene import GridScene
 
-from dembound.boundaries.support import SupportBuilder
 from dembound.continuum.layer import Profile
 from dembound.continuum.mesh import Around, Mesh
 from dembound.continuum.part import GridBody, GridPart
 from dembound.kernels.grid import move
 from dembound.kernels.tables import Body
-from dembound.motion.simulation import Simulation
 
 STEP = 1e-4
 """About half of the stable one of elements of 3 × 2 m of order 4."""
@@ -160,29 +158,3 @@ def takes_the_same_steps(body: GridBody, noise) -> None:
     close(layout.gather(now)[:2], u, 5)
     close(layout.gather(before)[:2], v, 5)
     assert not now[2].any()
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_supported_nodes_are_moved_by_the_table(grid, noise, axis: int) -> None:
-    """On springs, in the middle of elastic elements and on their edges; one with a prescribed velocity."""
-    body = grid()
-    mesh = body.mesh
-    elastic = mesh.nodes[~mesh.absorbs.any(axis=1)]
-    nodes = np.unique(elastic[2])
-    builder, stiffness = SupportBuilder(), 1e9 * np.arange(1.0, len(nodes))
-    builder.add(nodes[1:], axis, stiffness=stiffness)
-    builder.add(nodes[:1], axis, drive=2.0, signal=np.cos, prescribed=True)
-    simulation = Simulation(GridScene(body, supports=builder.table()), STEP)
-    u, v = noise(body, 1)[:2] * 1e-3, noise(body, 2)[:2]
-    simulation.state.displacement, simulation.state.velocity = (np.pad(each, ((0, 1), (0, 0))) for each in (u, v))
-    simulation.run(4)
-    plain = Plain(body, STEP)
-    for step in range(4):
-        force = plain.forces(u, v)
-        force[axis, nodes[1:]] -= stiffness * u[axis, nodes[1:]]
-        v = v + STEP / body.mass * force
-        v[axis, nodes[0]] = 2.0 * np.cos((step + 0.5) * STEP)
-        u = u + STEP * v
-
-    close(simulation.state.displacement[:2], u, 4)
-    close(simulation.state.velocity[:2], v, 4)

@@ -1,7 +1,6 @@
 """The ledger, entry by entry, where each energy is known by hand."""
 
 from collections.abc import Callable
-from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.kinds import loads
-from dembound.motion.energy import GAIN, OPPOSED, Entry, Ledger, opposed
+from dembound.motion.energy import GAIN, OPPOSED, Ledger, opposed
 from dembound.motion.simulation import Simulation
 from dembound.motion.state import State
 from dembound.motion.trackers import NEVER, Tracker
@@ -61,29 +60,6 @@ def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: floa
         assert entry.stepping == pytest.approx(ledger.entries[0].stepping, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("interval", "last", "steps"),
-    [
-        (10, NEVER, [0, 10, 20]),
-        (10, 27, [0, 10, 20, 27]),
-        (40, 4, [0, 4]),
-        (1, NEVER, list(range(29))),
-    ],
-)
-def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: list[int]) -> None:
-    each, other = simulated(bar), simulated(bar)
-    every, some = booked(each), booked(other, interval, last)
-    assert some.columns.shape == (0, len(fields(Entry)))
-    record = each.advance(29)
-    records = [other.advance(part) for part in (4, 9, 12, 4)]  # wherever the run is cut
-
-    assert np.array_equal(some.columns, every.columns[steps])
-    assert [entry.time for entry in some.entries] == [step * other.time_step for step in steps]
-    assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
-    assert np.array_equal(other.state.displacement, each.state.displacement)
-    assert np.array_equal(np.concatenate(records), record)
-
-
 def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
     scene = build_bar(spalling({"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}))
     simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
@@ -108,24 +84,6 @@ def at_rest(bar, **changes: object) -> Simulation:
     start = Start(np.zeros((3, scene.count)), contacts)
     step, _ = choose_step(scene)
     return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
-
-
-def test_what_balances_a_body_works_against_its_weight(bar) -> None:
-    # what settled before lets nothing fall: all disks drift along, up or down
-    simulation = at_rest(bar, **{**LONE, "packing.size": [1.0, 1.0]}, **FALL)
-    ledger = booked(simulation)
-    simulation.state.v[:2, simulation.state.layout.slot] = [[1.0], [-3.0]]
-    simulation.advance(10)
-
-    assert len(ledger.entries) == 10
-    for number, entry in enumerate(ledger.entries):
-        fallen = 3.0 * number * simulation.time_step
-        # four disks; sums of ten steps, each rounded
-        assert entry.load == pytest.approx(4.0 * MASS * 10.0 * fallen, rel=1e-13)
-        assert entry.balance == pytest.approx(-4.0 * MASS * 10.0 * fallen, rel=1e-13)
-        assert entry.kinetic == pytest.approx(0.5 * 4.0 * MASS * 10.0, rel=1e-13)
-        # what the drift has at the start is not gained
-        assert entry.error == pytest.approx(0.0, abs=1e-13 * entry.kinetic)
 
 
 PACKED = {
@@ -207,19 +165,6 @@ def test_a_pulse_that_comes_and_goes_between_two_entries_was_supplied(interval: 
     pulse = 2620.0 * 2740.0 * scene.case.bar.area * 91e-6 / 3.0
     assert ledger.entries[-1].supplied == pytest.approx(pulse, rel=1e-3)
     assert max(abs(entry.error) for entry in ledger.entries) < 1e-12 * pulse
-
-
-def test_a_gain_is_compared_with_what_came_and_went() -> None:
-    """A wave that has left does not hide a gain of the size of what it brought."""
-    scene = build_bar(loads(tomli_w.dumps(PASSING)))
-    simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
-    ledger = booked(simulation, 300)
-    simulation.advance(302)
-    came = ledger.entries[-1].supplied
-    speed = np.sqrt(2.0 * 1.1 * GAIN * came / scene.mass.sum())
-    simulation.track(Push(590, lambda state: state.velocity + speed * np.array([[1.0], [0.0], [0.0]])))
-    with pytest.raises(RunError, match=f"had supplied {came:.3g} J at most"):
-        simulation.advance(302)
 
 
 def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:

@@ -38,14 +38,6 @@ def test_a_way_over_a_side_is_that_to_the_mirror_image(side: str, plane: float, 
     np.testing.assert_array_equal(at, [place])
 
 
-def test_from_a_source_at_the_side_it_is_the_way_back_alone() -> None:
-    place = np.array([[7.0, 6.0]])
-
-    assert source(LEVEL["left"]).distance_over("right", 10.0, place) == pytest.approx([np.hypot(3.0, 6.0)])
-    assert source(LEVEL["left"]).distance_over("left", -1.0, place) == pytest.approx([np.hypot(8.0, 6.0)])
-    assert source(EVERYWHERE).distance_over("top", 9.0, place) == pytest.approx([3.0])
-
-
 @pytest.mark.parametrize(
     ("side", "box"),
     [

@@ -100,11 +100,3 @@ def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
     assert rule_of(bar({**changes, "wave.pulse": constant}))[0].earliest == pytest.approx(0.2 + far / 1000.0, rel=1e-12)
     assert rule_of(bar({**changes, "wave.pulse.period": 0.9}))[0].hold == pytest.approx(0.9, rel=1e-12)
     assert rule_of(bar({**changes, "run.silent_for": 0.07, "run.silent_level": 0.2}))[0].hold == 0.07
-
-
-def test_a_rock_bar_waits_for_its_load(spalling) -> None:
-    rule, _ = rule_of(spalling({"run.until": "silent"}))
-
-    # 0.525 m from the left end, whose load covers three nodes, 0.05 m; 1000 m/s, pulse of 0.4 ms
-    assert rule.earliest == pytest.approx(4e-4 + 0.475e-3, rel=1e-12)
-    assert rule.hold == pytest.approx(2.0 * 0.525e-3, rel=1e-12)

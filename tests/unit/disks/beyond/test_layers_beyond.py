@@ -34,10 +34,6 @@ def test_rows_end_at_joints_beside_and_below_the_box() -> None:
     assert heights(10.0, surface=45.0)[-2:] == pytest.approx([7.5] * 2)
 
 
-def test_a_joint_next_to_the_edge_of_the_box_has_no_row() -> None:
-    assert heights(0.5) == pytest.approx([20.0] * 4 + [10.0] * 3)
-
-
 CASE = {
     "packing": {"pattern": "B", "bricks": [2, 3], "brick": [6.0, 6.0], "radius": 0.25, "radius_ratio": 1.5},
     "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
@@ -51,17 +47,6 @@ SLOW = {"density": 2000.0, "p_wave_speed": 500.0}
 def scene(*layers: dict[str, float], **changes: object) -> DiskScene:
     """A body of 12 m × 18 m in layers."""
     return build(small(CASE, changes=({"layer": list(layers)} if layers else {}) | changes))
-
-
-def test_layers_of_one_material_have_the_continuum_of_that_material() -> None:
-    one, two = scene(), scene({"thickness": 9.0}, {})
-
-    own = two.outside.body.ground
-    assert own.joints == pytest.approx([9.0], abs=0.5)
-    np.testing.assert_allclose([each.moduli for each in own.media], [one.outside.body.medium.moduli] * 2, rtol=1e-9)
-    # ties do not depend on it
-    a, b = one.outside.wall.bonds, two.outside.wall.bonds
-    assert np.sort(a.stiffness[0]) == pytest.approx(np.sort(b.stiffness[0]), rel=1e-9)
 
 
 def test_ties_have_the_springs_of_the_layer_of_their_disk() -> None:

@@ -2,29 +2,20 @@
 
 import numpy as np
 import pytest
-from disk_systems import BODY, DENSE, FREE_FIELD, WRAP
+from disk_systems import BODY, DENSE
 
-from dembound.disks.contacts import pairs as module
 from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import INTACT, REFERENCE, SHEAR, TENSION
 from dembound.motion.simulation import Simulation
 
 FREE = {**BODY, "output.contacts": True}
-STEP = 1e-5
 
 
 def shaken(scene: DiskScene, size: float) -> np.ndarray:
     """Random displacements and rotations (3, n)."""
     return np.random.default_rng(3).normal(0.0, size, (3, scene.count))
-
-
-def columns_of(scene: DiskScene, displacement: np.ndarray) -> dict[str, np.ndarray]:
-    """The columns of a scene's contacts, without their units, under its first law."""
-    found = DiskSystem(scene, STEP).contact_forces(displacement)
-    return {name: values for name, (values, _) in found.items()}
 
 
 def summed(columns: dict[str, np.ndarray], count: int) -> np.ndarray:
@@ -63,20 +54,6 @@ def test_tension_is_positive_and_shear_pulls_the_first_disk_to_its_left(bar, alo
     assert columns["bonded"][0][at]
 
 
-@pytest.mark.parametrize(("boundary", "piece"), [({}, 50), (WRAP, module.PIECE)], ids=["free", "periodic"])
-def test_sums_over_contacts_are_the_forces_of_the_motion(bar, monkeypatch, boundary: dict, piece: int) -> None:
-    monkeypatch.setattr(module, "PIECE", piece)
-    scene = build(bar({**FREE, "packing": DENSE, "boundary": boundary}))
-    displacement = shaken(scene, 1e-4)
-    columns = columns_of(scene, displacement)
-    expected = DiskSystem(scene, STEP).forces.elastic(displacement)[:2]
-
-    assert len(columns["particles"]) == len(scene.assembly.pairs) > 100
-    # sums of some six forces in another order, normals to ε
-    rounding = 1e-14 * np.abs(columns["normal_force"]).max()
-    np.testing.assert_allclose(summed(columns, scene.count), expected, rtol=0.0, atol=10.0 * rounding)
-
-
 WITH_HISTORY = {"material.law": "linearpbond", "material.fric": 0.5, "material.contact_share": 0.5}
 BRITTLE = {**WITH_HISTORY, "material.pb_ten": 1e6, "material.pb_coh": 1e6}
 
@@ -111,19 +88,3 @@ def test_under_the_law_with_a_history_they_are_those_of_the_last_step(bar, geome
     assert (np.abs(columns["shear_force"][unbonded]) <= 0.5 * np.abs(columns["normal_force"][unbonded]) + turned).all()
     counted = np.bincount(columns["particles"].ravel(), minlength=scene.count)
     np.testing.assert_array_equal(counted, system.snapshot(displacement)["coordination"][0])
-
-
-def test_disks_of_a_column_are_numbered_as_in_the_scene(bar) -> None:
-    scene = build(bar({**FREE, **WITH_HISTORY, "packing": DENSE, "boundary": FREE_FIELD}))
-    columns = columns_of(scene, np.zeros((3, scene.count)))
-    in_column = columns["particles"] < scene.seam.count
-
-    # contacts of the body with the column are not pairs
-    assert (in_column[:, 0] == in_column[:, 1]).all()
-    np.testing.assert_array_equal(np.sort(columns["particles"], axis=0), np.sort(scene.assembly.pairs, axis=0))
-    # stresses of the body are those of its twins, but where contacts beyond it are missing
-    stress = DiskSystem(scene, STEP).stress(shaken(scene, 1e-4)[:, scene.seam.twin])
-    inside = np.setdiff1d(np.arange(scene.seam.count, scene.count), scene.seam.node)
-    size = np.abs(stress).max()
-    np.testing.assert_allclose(stress[inside], stress[scene.seam.twin[inside]], rtol=0.0, atol=1e-12 * size)
-    assert size > 0.0

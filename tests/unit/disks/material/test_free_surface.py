@@ -8,7 +8,7 @@ import pytest
 from dembound.casefile.disks.material import Material
 from dembound.continuum.mesh import Around, Mesh
 from dembound.disks.material import free_surface
-from dembound.disks.material.free_surface import _turned, cut_at, inset, mass_of, skin_depths
+from dembound.disks.material.free_surface import cut_at, inset, mass_of, skin_depths
 from dembound.disks.material.homogenise import homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.packings.brick import Brick
@@ -59,15 +59,6 @@ def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
     assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
-    """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
-    turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
-    of = dict(zip(("bottom", "top", "left", "right"), SIDES, strict=True))
-    assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
-    for side, before in of.items():
-        assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)
-
-
 def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
     skins = {"top": 0.3, "left": 0.2}
     box = inset((0.0, 0.0, 6.0, 4.0), skins)
@@ -90,17 +81,6 @@ def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -
     np.testing.assert_allclose(cut.vectors, dense.brick.vectors, atol=1e-12)
     moved = (cut.positions[:, 1] + height) % cut.size[1]
     np.testing.assert_allclose(moved, dense.brick.positions[:, 1], atol=1e-12)
-
-
-def test_the_mass_below_a_cut_ends_where_it_is_used_up(dense: PackedMaterial) -> None:
-    """ρ times the height from one cut to another is the mass of the disks between them."""
-    brick, (first, last) = dense.brick, (0.8, 3.1)
-    y = brick.positions[:, 1]
-    between = dense.mass[(y >= first) & (y < last)].sum() / (dense.density * brick.size[0])
-    ends = [height + dense.cut(height)[0] for height in (first, last)]
-
-    assert ends[1] - ends[0] == pytest.approx(between, rel=1e-12)
-    assert dense.cut(first + 2.0 * float(brick.size[1])) == pytest.approx(dense.cut(first))
 
 
 @pytest.mark.parametrize("height", [0.01, 0.24, 0.26, 0.49])

@@ -66,15 +66,6 @@ def test_corrections_move_the_joints_of_random_packings(random_brick, height) ->
     np.testing.assert_allclose(left_at(ground, height), 0.0, atol=1e-3)
 
 
-def test_equal_layers_are_one(random_brick) -> None:
-    ground = ground_of(random_brick, STIFF, STIFF)
-    assert np.isnan(ground.joints[0][1:]).all()
-    plain = make_packed_material(random_brick, STIFF, (), 1)
-    for zone in ground.zones:
-        assert zone.material.moduli == plain.moduli
-        assert zone.material.density == plain.density
-
-
 def test_contacts_that_reach_across_a_zone_are_refused(lattice) -> None:
     with pytest.raises(CaseError, match="too thin"):
         ground_of(lattice, STIFF, SOFT, STIFF, joints=(10.0, 11.0))

@@ -103,18 +103,6 @@ def test_of_a_random_brick_the_smaller_share_along_x_or_y_counts(random_brick: B
     assert ground(random_brick, ("rotation",), contact_share=0.4, fric=0.5).bond_share != whole.bond_share
 
 
-@pytest.mark.parametrize("match", ["lattice", "assembly"])
-def test_a_brick_was_packed_under_the_pressure_of_its_overlaps(random_brick: Brick, match: str) -> None:
-    made = ground(random_brick, match=match)
-    length = np.hypot(*random_brick.vectors.T)
-    push = made.moduli.emod * np.maximum(-random_brick.gaps, 0.0)
-
-    # mean of both normal stresses Σ f l / A; sums of some 300 terms
-    assert made.packed_pressure == pytest.approx(0.5 * np.sum(push * length) / 30.0, rel=1e-12)
-    assert made.packed_pressure == pytest.approx(0.008 * made.moduli.emod, rel=0.05)
-    assert ground(lattice()).packed_pressure == 0.0
-
-
 def test_disks_that_only_touch_cannot_be_locked_in() -> None:
     with pytest.raises(CaseError, match=r"material\.locked_in: needs disks that were packed under stress"):
         ground(lattice(), law="linearpbond", locked_in=1e6)

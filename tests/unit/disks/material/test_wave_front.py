@@ -1,7 +1,5 @@
 """The fastest waves of a packing."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -63,15 +61,3 @@ def test_group_speeds_are_slopes_of_the_frequency(ground) -> None:
     assert largest_group_speed(lattice, 1e-6) == pytest.approx(slopes.max(), rel=4e-3)
     assert largest_group_speed(lattice, 0.9) == pytest.approx(central(0.9), rel=8e-3)
     assert central(0.9) > 1.05 * slopes.max()
-
-
-def test_a_front_is_as_fast_as_the_faster_of_both(ground) -> None:
-    alike, faster = ground(fric=0.5), ground(held=["y"], **SOFT)
-
-    assert front_of(alike, 0.9).speed == pytest.approx(1000.0, rel=1e-12)
-    assert front_of(alike, 0.9).grain == pytest.approx(0.5, rel=1e-15)
-    assert front_of(faster, 0.9).speed > 1.2 * largest_phase_speed(faster)
-    assert front_of(faster, 1.0).speed < np.inf
-    # heavier by four: half the speed
-    heavy = replace(faster, density=4.0 * faster.density)
-    assert front_of(heavy, 0.9).speed == pytest.approx(0.5 * front_of(faster, 0.9).speed, rel=1e-12)

@@ -30,26 +30,6 @@ def strained(scene: DiskScene, xx: float, yy: float) -> np.ndarray:
     return np.stack([xx * x, yy * y, 0.0 * x])
 
 
-@pytest.mark.parametrize(
-    ("size", "boundary", "count", "side"),
-    [
-        # disks of 0.5 m: a rim of 2 m, blocks of 5 m at least
-        ((14.0, 19.0), {}, (2, 3), (5.0, 5.0)),
-        ((13.5, 18.5), {}, (1, 2), (9.5, 7.25)),
-        # narrow: half of the width
-        ((4.0, 14.0), {}, (1, 2), (2.0, 5.0)),
-        # periodic: no rim
-        ((10.0, 5.0), WRAP, (2, 1), (5.0, 5.0)),
-    ],
-)
-def test_blocks_of_ten_diameters_fill_what_is_inside_the_rim(body, size, boundary, count, side) -> None:
-    scene = body(*size, boundary=boundary)
-    blocks = Blocks.of(scene)
-    assert tuple(blocks.count) == count
-    np.testing.assert_allclose(blocks.size, side, rtol=1e-12)
-    np.testing.assert_allclose(blocks.middles.mean(axis=(0, 1)), 0.5 * np.array(size), rtol=1e-12)
-
-
 @pytest.mark.parametrize("boundary", [{}, WRAP], ids=["free", "periodic"])
 def test_a_strained_lattice_has_its_stress_in_every_block_wherever_it_ends(body, boundary) -> None:
     scene = body(13.0, 17.5, boundary=boundary)  # blocks of no whole number of disks

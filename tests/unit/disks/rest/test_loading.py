@@ -68,13 +68,3 @@ def test_the_elastic_way_ends_where_the_first_bond_is_at_its_strength(bar, share
     assert left[1] == pytest.approx(0.5 * left[0], rel=LOOK / ends)
     assert left[2] == 0.0
     assert left[0] == pytest.approx((1.0 - reached) * 0.5 * 1e6, rel=0.5)  # of a disk at a side, with its shear
-
-
-def test_a_body_that_the_elastic_law_does_not_hold_goes_on_from_its_start(bar) -> None:
-    found = sheared(bar)
-    found.state.displacement = found.rest
-    assert found.loading.give_up_elastic_law(found.state)
-    assert not found.state.displacement.any()
-    found.loading.put_on(found.state)
-    assert np.abs(found.system.load).max() < 1e-9 * 1e6
-    assert not found.loading.give_up_elastic_law(found.state)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, fitted, turn
+from disk_systems import BODY, fitted, turn
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -10,7 +10,7 @@ from dembound.disks.stepping.balance import Balance, mean_rotations
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
-from dembound.kernels.follower import extra_work, side_rotations, turn_forces
+from dembound.kernels.follower import extra_work, turn_forces
 
 LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
 STEP = 0.1
@@ -143,20 +143,6 @@ def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
     assert np.abs(load - turned)[:2, balance.followers.node].max() > 0.1
 
 
-def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
-    body = scene()
-    parts, (balance, steady) = parts_of(body), balance_of(body)
-    datum, debris = balance.datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
-    isolate(parts, debris)
-    balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force, None)
-
-    places, angle, moved = body.positions.T + datum[:2], 0.3, datum.copy()
-    moved[:2] += (turn(angle) - np.eye(2)) @ places
-    moved[:2, debris] += 7.0
-    # some ten operations on numbers of size 1
-    assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
-
-
 def test_the_work_goes_on_from_where_forces_end(scene) -> None:
     body = scene()
     rng, parts, (balance, steady) = np.random.default_rng(6), parts_of(body), balance_of(body)
@@ -181,35 +167,3 @@ def test_the_work_goes_on_from_where_forces_end(scene) -> None:
     assert max(worst) < 1e-13
     assert np.count_nonzero(balance.force[0] == 0.0) == 3
     assert abs(whole) > 0.1
-
-
-def test_through_a_seam_nothing_comes_any_more_and_the_others_bear_what_did(scene) -> None:
-    body = scene(TWO_BRICKS, **FREE_FIELD)
-    across = np.zeros((3, body.count))
-    across[:, body.seam.node] = np.random.default_rng(7).uniform(-1.0, 1.0, (3, len(body.seam.node)))
-    parts, (balance, steady) = parts_of(body), balance_of(body, across)
-    before, u, v = balance.force.copy(), shaken(body, 4), shaken(body, 5)
-    node = int(body.seam.node[3])
-    inside = int(np.setdiff1d(np.arange(body.seam.count, body.count), balance.followers.node)[20])
-    in_column = 5
-    load = steady + balance.force
-    isolate(parts, [node, inside, in_column])
-    balance.end_on_debris(parts, u, v, STEP, load, None)
-
-    ended = [node, inside, in_column]
-    rest = np.setdiff1d(np.arange(body.count), ended)
-    assert np.flatnonzero(balance.let_go).tolist() == sorted(ended)
-    assert not balance.force[:, ended].any()
-    # a sum and a difference of numbers of size 1
-    np.testing.assert_allclose(load[:, ended], steady[:, ended], rtol=0.0, atol=1e-15)
-    sides = np.isin(rest, np.concatenate([balance.followers.node, *(body.edges[s].nodes for s in ("bottom", "top"))]))
-    assert np.array_equal(balance.force[:, rest[~sides]], before[:, rest[~sides]])
-    for part in body.parts.values():
-        lost = across[:2, ended].sum(axis=1) if part.start > 0 else 0.0
-        # some sixty terms of size 1
-        np.testing.assert_allclose(
-            balance.force[:2, part].sum(axis=1), before[:2, part].sum(axis=1) + lost, rtol=0.0, atol=1e-13
-        )
-    # what came through turns no more with the body
-    turn_forces(balance.followers, u, v, load, STEP)
-    np.testing.assert_allclose(load[:, ended], steady[:, ended], rtol=0.0, atol=1e-15)

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, shaken
 
-from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.balance import Balance
-from dembound.disks.stepping.carriers import carried, carriers_of, on_side, relative_work, standing
+from dembound.disks.stepping.carriers import carried, carriers_of, on_side, standing
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 
@@ -106,17 +105,3 @@ def test_a_side_that_has_lost_half_of_its_forces_carries_no_more_nor_does_the_op
     ended[by_side["left"][1:7]] = True
     stands = dict(zip((each.side for each in carriers), standing(carriers, ended, force), strict=True))
     assert stands == {side: side not in ("left", "right") for side in stands}
-
-
-def test_work_counts_against_the_mean_motion_of_the_side(scene) -> None:
-    body = scene()
-    carriers, force, moved = carriers_of(body), shaken(body, 1.0), np.zeros((3, body.count))
-    moved[:2] = [[0.3], [-0.2]]
-    np.testing.assert_allclose(relative_work(carriers, force, moved, none_of(body)), 0.0, atol=1e-14)
-    left = next(each for each in carriers if each.side == "left")
-    node = int(left.nodes[4])
-    moved[:, node] += [2.0, 0.0, 0.5]
-    apart = 2.0 * np.where(left.nodes == node, 1.0 - 1.0 / len(left.nodes), -1.0 / len(left.nodes))
-    expected = np.sum((left.share * force[:, left.nodes])[0] * apart) + 0.5 * force[2, node]
-    assert relative_work(carriers, force, moved, none_of(body))[carriers.index(left)] == pytest.approx(expected)
-    assert OPPOSITE["left"] == "right"

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, SPALLING, small
 
-from dembound.accuracy.runner import measure
-from dembound.disks.stepping.load_factor import LOAD_FACTOR, load_factor_in_words
+from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.tables import Limits
 from dembound.laws.linearpbond import LIMITS, limit_lines
-from dembound.running import Progress, plan, resume_case, run_case
+from dembound.running import plan, run_case
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)
 
@@ -51,24 +50,6 @@ STATIC = PUSHED | {
 }
 
 
-QUIET = {"output.contacts": False, "output.snapshots": 0}
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> dict:
-    """The summary of a run."""
-    return json.loads(
-        (run_case(small(STATIC, "whole", QUIET), tmp_path_factory.mktemp("whole")) / "summary.json").read_text()
-    )
-
-
-def test_a_resumed_run_has_the_same_factor(whole, tmp_path):
-    resumed = resume_case(run_case(small(STATIC, "part", QUIET | {"run.duration": 0.006}), tmp_path), until=0.01)
-    assert json.loads((resumed / "summary.json").read_text())["load_factor"] == whole["load_factor"]
-    first, second = whole["load_factor"]["particles"]
-    assert first != second
-
-
 def test_a_body_beyond_its_limits_at_rest_has_the_factor_zero(tmp_path):
     """Contacts open under a pull of 0.5 MPa along y, and bonds of 0.1 MPa do not hold either."""
     material = STATIC["material"] | {"pb_ten": 1e5, "pb_coh": 1e5}
@@ -85,34 +66,11 @@ def test_a_body_beyond_its_limits_at_rest_has_the_factor_zero(tmp_path):
     )
 
 
-def test_the_factor_of_a_choice_is_found_as_in_a_run(whole):
-    case = small(STATIC, "charted", QUIET)
-    factor = whole["load_factor"]["factor"]
-    assert measure(case, Progress())[0].findings[LOAD_FACTOR] == (factor, "1")
-    x, y = whole["load_factor"]["position"]
-    assert LOAD_FACTOR in measure(case, Progress(), inside=(x - 0.1, y - 0.1, x + 0.1, y + 0.1))[0].findings
-    assert LOAD_FACTOR not in measure(case, Progress(), inside=(x + 0.1, y + 0.1, x + 0.2, y + 0.2))[0].findings
-    assert any("holds up to" in line for line in whole["warnings"]) is (factor < 1.0)
-
-
 def test_without_limits_there_is_no_factor(tmp_path):
     case = small(PUSHED, "free", {"material.contact_share": 0.0, "output.load_factor": True, "output.pictures": False})
     summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
     assert summary["load_factor"] == {"factor": None}
     assert load_factor_in_words(summary["load_factor"]) == "the elastic law holds under any multiple of the waves"
-
-
-def test_bonds_that_do_not_break_have_no_limit(tmp_path):
-    """Of bonds alone; in all 20 columns of disks none breaks, and in 2 the first one is farther inside."""
-    bonds = QUIET | {"material.contact_share": 0.0}
-    found = {}
-    for depth in (0, 2, 20):
-        case = small(STATIC, f"kept{depth}", bonds | {f"boundary.{side}.intact": depth for side in ("left", "right")})
-        summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
-        found[depth] = summary["load_factor"]
-    assert found[20] == {"factor": None}
-    assert found[2]["factor"] >= found[0]["factor"]
-    assert 1.0 < found[2]["position"][0] < 9.0
 
 
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}

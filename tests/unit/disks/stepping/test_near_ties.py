@@ -6,7 +6,6 @@ from small_cases import SURROUNDED, small
 
 from dembound.boundaries.edge import SIDES
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.near_ties import sides_near
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.simulation import Simulation
 
@@ -64,18 +63,6 @@ def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
     assert found["left"]["time"] == 40 * STEP
     assert found["bottom"] == {"time": 50 * STEP, "position": [6.5, 2.0]}  # the larger one
     assert set(found) == {"left", "bottom"}
-
-
-def test_beside_a_column_places_are_those_of_the_body() -> None:
-    """The body's disks come after those of the column, beyond the continuum."""
-    wave = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
-    changes = {"boundary.bottom": {"type": "outside", "wave_s": "up"}, "wave.up": wave}
-    scene = build(small(SURROUNDED, "column", FULL | changes))
-    assert scene.seam is not None
-    assert (sides_near(scene)[: scene.seam.count] == -1).all()
-    run = Watched(scene)
-    run.pairs.arrays.slip[run.between((2.5, 4.5), (3.5, 4.5))] = 0.1
-    assert run.look(30) == {"left": {"time": 30 * STEP, "position": [3.0, 4.5]}}
 
 
 @pytest.mark.parametrize(("way", "opens"), [(1.0, True), (-1.0, False)])

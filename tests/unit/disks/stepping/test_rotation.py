@@ -82,31 +82,3 @@ def test_a_turn_along_the_tangent_becomes_one_that_keeps_all_distances(body: Dis
     before, after = (np.hypot(*(p[:, None] - p[:, :, None])) for p in places)
     np.testing.assert_allclose(after, before, rtol=0.0, atol=2e-13)
     assert np.array_equal(moved[2], spun)
-
-
-def test_the_rotation_is_that_of_the_whole_body_disks_own_spin_included(body: DiskScene) -> None:
-    # each disk moves along the tangent of one angle and rolls by another: the angular momentum is that of both
-    datum, orbit, spin = datum_of(body), 0.02, 0.3
-    moved = datum + tangent(body, datum, orbit)
-    moved[2] = datum[2] + spin
-    arm = arms(body, datum)
-    around, own = np.sum(body.mass * (arm**2).sum(axis=0)), body.inertia.sum()
-    angle = (around * orbit + own * spin) / (around + own)
-    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
-
-    stretched = (orbit - angle) * np.stack([-arm[1], arm[0]])
-    # as above
-    expected = datum[:2] + turn(angle) @ (arm + stretched) - arm
-    np.testing.assert_allclose(moved[:2], expected, rtol=0.0, atol=1e-13)
-    assert abs(angle - orbit) > 1e-3
-
-
-def test_velocities_turn_about_that_of_the_centre(body: DiskScene) -> None:
-    datum, angle = datum_of(body), 0.5
-    v = np.random.default_rng(2).uniform(-1.0, 1.0, (3, body.count)) + np.array([[5.0], [3.0], [1.0]])
-    _, turned = turned_as_a_whole(body, datum + tangent(body, datum, angle), v.copy(), datum)
-    mean = np.average(v[:2], axis=1, weights=body.mass)[:, None]
-
-    # sums of 60 numbers of size 10
-    np.testing.assert_allclose(turned[:2], mean + turn(angle) @ (v[:2] - mean), rtol=0.0, atol=1e-13)
-    assert np.array_equal(turned[2], v[2])

@@ -64,22 +64,3 @@ def test_the_locked_in_stress_is_in_it(bar) -> None:
     # 3 MPa in place of the 10 MPa it was packed under; overlaps are 2e-3 of the diameter, rounding is 1e-13 of them
     packed = scene.ground.brick.stress
     np.testing.assert_allclose(mean, 3e6 * packed / -(0.5 * packed[:2].sum()), rtol=1e-11)
-
-
-def test_to_look_changes_nothing(bar) -> None:
-    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, "wave.pulse.amplitude": -5.0, "monitor": []}
-    scene = build(bar({**brittle, "boundary.left": {"type": "velocity", "wave_p": "pulse"}}))
-    step, _ = choose_step(scene)
-    alone, looked_at = (Simulation(scene, step) for _ in range(2))
-    for _ in range(15):
-        for simulation in (alone, looked_at):
-            simulation.advance(4)
-        looked_at.system.stress(looked_at.state.displacement)
-
-    assert [name for name, _ in alone.state.laws] == ["elastic", "linearpbond"]
-    assert looked_at.state.laws == alone.state.laws
-    assert np.array_equal(looked_at.state.displacement, alone.state.displacement)
-    assert np.array_equal(looked_at.state.work, alone.state.work)
-    cracks = [simulation.system.take_cracks(60) for simulation in (alone, looked_at)]
-    assert len(cracks[0]) > 0
-    assert np.array_equal(cracks[0].step, cracks[1].step)

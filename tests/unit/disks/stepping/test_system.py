@@ -5,15 +5,12 @@ import pytest
 from disk_systems import (
     BONDED,
     ELASTIC,
-    EPS,
-    REFERENCE,
     SIDES,
     STEP,
     TOUGH,
     WEIGHT,
     WITH_HISTORY,
     begun,
-    forces_of,
     settled,
     shaken,
 )
@@ -79,18 +76,3 @@ def test_energy_that_comes_with_another_law_is_written_down(loose, balanced: boo
     np.testing.assert_allclose(state.work[:, 4], change, rtol=0.0, atol=1e-13 * abs(before))
     assert abs(change) > 1e-9 * abs(before)
     assert not np.delete(state.work, 4, axis=1).any()
-
-
-def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
-    body = loose(**WITH_HISTORY, **REFERENCE)
-    system = DiskSystem(body, STEP)
-    state = begun(system)
-    state.displacement = shaken(body, 1e-6)
-    before = system.steady + system.forces.elastic(state.displacement)
-    system.react(LAW_ENDS, 1, state)
-    steady = system.steady if system.steady.size else 0.0  # no array where all are zero
-    after = steady + forces_of(system, system.contacts, state.displacement)
-
-    # sums of some five locked-in forces
-    scale = np.abs(system.contacts["body"].force[:, :2]).max()
-    np.testing.assert_allclose(after, before, rtol=0.0, atol=20.0 * EPS * scale)

@@ -64,22 +64,3 @@ def test_floors_that_the_continuum_cannot_have_are_refused() -> None:
     cut = {"name": "cut", "type": "polygon", "points": [list(point) for point in slope(12.0)]}
     found = line((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), hole=[cut, niche])
     assert found.startswith("hole[2, niche]: reaches boundary.right, where the continuum has no hole; leave disks")
-
-
-def test_heights_must_be_an_element_apart() -> None:
-    above, below = "is 3 m above the surface beyond the right side; must be", "is 3 m above the lower side of the disks"
-    for height, words in ((17.0, above), (3.0, below)):
-        assert words in line(*slope(height))
-        assert line(*slope(height)).endswith("at least 4 m above it, the smallest useful element")
-        smaller = scene(*slope(height), **{"outside.element": 3.0})
-        assert smaller.outside.body.mesh.element_sizes[:, 1].max() <= 3.0
-
-
-def test_a_force_on_the_floor_beyond_is_on_the_continuum() -> None:
-    force = {"name": "f", "force": [0.0, -8e3], "region": [29.9, 11.9, 33.75, 12.5]}
-    made = scene(*slope(12.0), load=[force])
-    loaded = np.flatnonzero(made.steady_load[1])
-
-    assert (loaded >= made.outside.first).all()
-    assert made.steady_load[1].sum() == pytest.approx(-8e3, rel=1e-12)
-    assert made.positions[loaded, 1] == pytest.approx(np.full(len(loaded), 12.0), abs=1e-9)

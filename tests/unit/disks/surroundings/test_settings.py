@@ -69,15 +69,6 @@ def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
     assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
 
 
-def test_without_waves_the_size_suits_the_holes(case) -> None:
-    """A quarter of the body where nothing is; near a hole as if its wall were pressed, as it moves when it is freed."""
-    still = {"load": {"wave": None, "position": None, "force": None, "acceleration": [0.0, -9.81]}, "wave": {}}
-    still["static"] = {"boundary": {"bottom": {"type": "fixed"}}}
-    assert chosen(case(**still)).element == 5.0
-    hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
-    assert chosen(case(hole=[hole | {"centre": [20.0, 3.0]}], **still), 0.1).element == pytest.approx(6.0 * 0.05**0.2)
-
-
 def test_a_load_that_stays_needs_a_margin(case) -> None:
     stays = case(wave={"pulse": STAYS})
 
@@ -120,11 +111,3 @@ def test_layers_begin_farther_beside_deep_ground(case) -> None:
     # cos θ = 0.75/2 · 1: 53.4 m from the hole, less 20 m of disks and 0.4 of three elements
     assert found.margin == math.ceil((132.0 * 0.375 / math.sqrt(1.0 - 0.375**2) - 20.0 - 0.4 * 15.0) / 5.0)
     assert settings_of(with_changes(deep, {"outside.margin": 2}), ROCK, 1.0, box, SIDES).margin == 2
-
-
-def test_without_a_surface_or_sides_nothing_comes_back(case) -> None:
-    found = case(hole=[HOLE])
-    assert len(buried(found, BOX, SIDES)) == 4  # the hole and the load, on two sides
-    assert len(buried(found, BOX, ("left",))) == 2
-    assert buried(found, BOX, (*SIDES, "top")) == []
-    assert buried(found, BOX, ("bottom",)) == []

@@ -99,25 +99,6 @@ def test_ties_neither_push_nor_turn_the_whole(ground) -> None:
     assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(force).max()
 
 
-def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground) -> None:
-    """Sides moved by 2 m move the motion of ties by 1 m along the gradients of each component."""
-    tied = Tied(ground)
-    bonds = CutBonds.of(ground, tied.cut, tied.body.positions)
-    near, far = (bonds.between(np.add(tied.mesh.sides, [-offset, offset, -offset, offset])) for offset in (0.0, 2.0))
-    moved = far.corrector - near.corrector
-    for number, (axis, sign) in enumerate(((0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0))):
-        of_side = moved[..., bonds.side == number]
-        expected = np.zeros((3, 4))
-        expected[axis, axis] = sign  # xx or yy
-        expected[1 - axis, 2:] = sign  # xy and yx
-        np.testing.assert_allclose(of_side, np.broadcast_to(expected[..., None], of_side.shape), atol=1e-12)
-    tied.wall = Wall.of(tied.mesh, far, 0.0)
-    x, y = np.vstack([tied.body.positions, tied.mesh.positions]).T
-    u = np.random.default_rng(4).normal(size=(3, tied.count))
-    turned = np.stack([-y, x, np.ones_like(x)])
-    assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(tied.forces(12.0 * u)).max()
-
-
 def test_a_twin_leaves_what_the_particle_has_beyond_it_and_velocities_count_times_the_lag(ground) -> None:
     """Forces are added to existing ones, at the lines of the support table; none act on the twins."""
     tied, rng = Tied(ground), np.random.default_rng(5)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from dembound.bar.fracture import Spall, spalls
-from dembound.bar.scene import build_bar
 from dembound.gauge.peaks import first_fall
 from dembound.kinds.bar import summary
-from dembound.kinds.bar.summary import LATER_SPALLS, describe_bar, describe_end, part_of, summarise_bar
+from dembound.kinds.bar.summary import LATER_SPALLS, part_of, summarise_bar
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan
 from dembound.motion.simulation import Simulation
@@ -42,22 +41,6 @@ def summary_of(planned: Plan, simulation: Simulation, path: Path) -> dict:
     """The summary of a run that took a second."""
     common = summarise(planned, simulation, path, {"step": 1.0})
     return common | planned.kind.summarise(planned.scene, simulation, Beginning(simulation.system), path)
-
-
-def test_a_bar_and_its_ends_in_numbers(spalling) -> None:
-    ends = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
-    scene = build_bar(spalling({"bar.section": 0.5, "bar.attenuation": 0.1, **ends}))
-
-    described = describe_bar(scene)
-    assert (described["youngs_modulus"], described["impedance"], described["section"]) == (2.5e9, 2.5e6, 0.5)
-    assert described["critical_stretch"] == 8e6 / 2.5e9
-    assert described["strength"] == pytest.approx(8e6, rel=1e-15)
-    assert described["fracture_energy"] is described["crack_opening"] is described["characteristic_length"] is None
-    assert describe_end(scene, "left") == {"type": "fixed"}
-    assert describe_end(scene, "right") == {"type": "viscous", "beta_p": 0.9}
-    bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
-    described = describe_bar(build_bar(spalling({"bar": bar})))
-    assert described["critical_stretch"] is described["strength"] is None
 
 
 def test_the_summary_of_a_bar_is_plain_json_with_the_spalls_of_its_bonds(run, monkeypatch) -> None:

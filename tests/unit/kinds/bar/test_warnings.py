@@ -9,7 +9,7 @@ from dembound.bar.stability import choose_step
 from dembound.exact.bar import triangle_spall
 from dembound.kinds.bar.facts import cells_of_waves
 from dembound.kinds.bar.range_warnings import never_closing, range_warnings
-from dembound.kinds.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
+from dembound.kinds.bar.warnings import bar_warnings, ends_too_soon
 
 UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}
 EXACT = {"method": {"type": "finite_difference"}}
@@ -115,21 +115,6 @@ def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: boo
     assert bar_warnings(build_bar(spalling({"method": method, "boundary": ends, "load": []})), 2e-5) == []
 
 
-def test_waves_at_ends_beside_the_strength(spalling) -> None:
-    # ρc = 2.5e6 Pa·s/m and a critical stretch of 0.0032, which is 8 MPa; dashpots let 2β/(1 + β) of a wave in
-    limit = {"bar": {**UNBROKEN["bar"], "critical_stretch": 0.0032}}
-    for velocity, ends, weak in (
-        (3.3e-4, enters(), False),
-        (3.1e-4, enters(), True),
-        (3.1e-4 / 1.5, enters(beta_p=3.0), True),
-        (3.3e-4, enters("velocity"), False),
-        (3.1e-4, enters("velocity"), True),
-    ):
-        for bar, key in ((limit, "bar.critical_stretch"), ({}, "bar.strength")):
-            found = list(stress_beside_strength(spalling({**bar, **ends, "wave.hit.amplitude": velocity})))
-            assert found == weak * [f"wave.hit: its stress ρcv is 775 Pa, 0.0097 % of {key}, 8 MPa: Pa and MPa?"]
-
-
 def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
     # moments of the wave are 0.4 ms/500 apart
     assert list(ends_too_soon(spalling({"run.duration": SPALLED + 1e-6}))) == []
@@ -146,19 +131,6 @@ def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
         assert "from the free left end" in warning
         assert float(warning.split()[-2]) == pytest.approx(1e-3 + SPALLED, abs=4e-6)
         assert not list(ends_too_soon(spalling({**changes, **later, "run.duration": 2.3e-3})))
-
-
-def test_a_dashpot_takes_half_of_a_load(spalling) -> None:
-    # what is left of 12 MPa is less than the strength, of 24 MPa 12
-    end = {"boundary.left": {"type": "viscous"}, "run.duration": 1e-3}
-    (weak,) = ends_too_soon(spalling(end))
-    (strong,) = ends_too_soon(spalling(end | blow(24e6)))
-    assert weak.endswith("before 0.0012 s")
-    assert float(strong.split()[-2]) == pytest.approx(SPALLED, abs=1e-6)
-    # a pressure that stays makes no tension, but a crest
-    stays = {"wave.hit": {"type": "constant", "amplitude": 1.0, "rise": 2e-4}, "run.duration": 1e-3}
-    (warning,) = ends_too_soon(spalling(stays))
-    assert warning.endswith("before 0.0012 s")
 
 
 @pytest.mark.parametrize(
@@ -191,18 +163,6 @@ def with_ranges(ranges: list[dict], run: dict | None = None, **tables):
 def warned(case) -> list[str]:
     scene = build_bar(case)
     return bar_warnings(scene, choose_step(scene)[0])
-
-
-@pytest.mark.parametrize(
-    ("spacing", "courant", "key"), [(0.025, 1.0, None), (0.025, 0.9, "run.courant"), (0.02, 0.8, "bar.range:")]
-)
-def test_fronts_of_impacts_need_one_step_for_a_spacing(spacing: float, courant: float, key: str | None) -> None:
-    run = {"duration": 4e-4, "courant": courant}
-    lines = warned(with_ranges([STRIKER[0], STRIKER[1] | {"spacing": spacing}], run))
-    found = [line for line in lines if "impacts" in line and "fracture_energy" not in line]
-    assert sum("bar.fracture_energy" in line for line in lines) == (spacing == 0.025)
-    assert len(found) == (key is not None)
-    assert key is None or found[0].startswith(key)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from disk_systems import LAMB
 from dembound.disks.material.packing_waves import sent_back
 from dembound.disks.scene import build
 from dembound.disks.surroundings.settings import signals_of
-from dembound.formulas.disks.continuum import expected_errors, lattice_errors
+from dembound.formulas.disks.continuum import expected_errors
 from dembound.kinds import with_changes
 from dembound.kinds.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.words import percent
@@ -53,17 +53,6 @@ def test_reflections_are_those_of_the_profile(case) -> None:
     for found, slower in ((p, 1.0), (s, np.sqrt(2.0))):
         expected = 100.0 * 1e-4 ** (np.cos(np.radians(ANGLES)) * slower)
         assert [float(each) for each in found.split(",")] == pytest.approx(expected, rel=0.05)
-
-
-def test_ties_return_what_a_half_bond_does(case) -> None:
-    """For one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
-    burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
-    scene = build(with_changes(case, {"wave": burst}))
-    k = 2.0 * np.pi / 80.0
-
-    ties, across = lattice_errors(scene, signals_of(scene.case))
-    assert ties == pytest.approx((1.0 / 16.0 + 0.1 / 8.0 / np.sqrt(2.0)) * k**2, rel=0.03)
-    assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
 
 
 def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
@@ -124,15 +113,6 @@ def test_a_margin_too_small_below_the_surface(case) -> None:
     assert line.endswith(" elements are enough")
 
 
-LAYERS = {"layer": [{"thickness": 6.0, "density": 1800.0, "s_wave_speed": 350.0}, {}], "outside.accuracy": 0.01}
-
-
-def test_a_low_row_of_elements_has_a_warning(case) -> None:
-    thin = LAYERS | {"layer": [{"thickness": 8.0}, {"name": "seam", "thickness": 2.0}, {}]}
-    (line,) = warnings_of(case, **thin)
-    assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
-
-
 def test_layers_of_strongly_anisotropic_ground(case) -> None:
     """They return more, which is said, and no formula says how much; one lattice below others is enough."""
     shear = {"material.kratio": 0.1, "material.pb_kratio": 0.1}
@@ -151,13 +131,3 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
 def shear_of_layer(ratio: float) -> dict[str, float]:
     """A layer with this ratio of stiffness."""
     return {"kratio": ratio, "pb_kratio": ratio}
-
-
-def test_against_growth_is_what_helps(case) -> None:
-    """Elastic ground is stepped below its limit, so that no smaller step helps; bonds that break may need one."""
-    scene = build(case)
-    assert "smaller run.safety" not in scene.against_growth
-    assert 'another type than "outside"' in scene.against_growth
-    breaks = build(with_changes(case, {"material.law": "linearpbond"}))
-    assert breaks.against_growth == f"{scene.against_growth}, or a smaller run.safety or run.time_step"
-    assert build(with_changes(case, {"boundary": {}})).against_growth == "a smaller run.safety or run.time_step"

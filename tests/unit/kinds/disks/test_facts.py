@@ -140,17 +140,3 @@ def test_loads_and_the_static_stage_are_reported(bar) -> None:
     assert own.endswith("ratio of 1e-05, of 1e-07 once contacts slide or open")
     assert Disks().not_estimated(case) == []
     assert Disks().settles(case)
-
-
-def test_holes_are_reported_with_what_they_leave(bar) -> None:
-    niche = {"name": "niche", "type": "rectangle", "corners": [6.0, 0.5, 8.0, 1.1]}
-    gap = {"name": "gap", "type": "rectangle", "corners": [8.9, 0.5, 9.4, 1.1], "stage": "after"}
-    facts = facts_of(bar({"static": {"stress": [0.0, 0.0, 0.0]}, "monitor": [], "hole": [niche, gap]}))
-
-    assert facts["particles"] == "35, 36 before the excavation"
-    assert facts["hole niche"] == "rectangle, present from the start"
-    assert facts["hole gap"] == "rectangle, excavated once the body has settled"
-    # 36 disks of the outer square go, four of which are an island
-    outer, inner = [[3, 1], [6, 1], [6, 4], [3, 4], [3, 1]], [[4, 2], [4, 3], [5, 3], [5, 2], [4, 2]]
-    moat = {"name": "moat", "type": "polygon", "points": [*outer, *inner]}
-    assert facts_of(bar({"packing.size": [10.0, 5.0], "hole": [moat]}))["particles"] == "164; 4 severed disks left out"

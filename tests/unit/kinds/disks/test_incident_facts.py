@@ -1,6 +1,5 @@
 """A wave at an angle in words, in monitors and in snapshots."""
 
-import numpy as np
 import pytest
 from small_cases import SURROUNDED, small
 
@@ -48,16 +47,3 @@ def test_other_waves_are_reported(changes, wave: tuple[str, ...], reflected: str
     facts = dict(incident_facts(build(small(CASE, changes=changes))))
     assert all(words in facts["incident wave"] for words in wave)
     assert reflected in facts["reflected waves"]
-
-
-def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one() -> None:
-    scene = build(small(CASE))
-    values = np.random.default_rng(1).normal(size=(scene.count, 3))
-    motion = scene.beside.motion(values, "velocity", 0.03)
-
-    assert np.array_equal(motion["scattered_"], values[scene.beside.nodes])
-    ground = motion[""] - motion["scattered_"]
-    expected = scene.ground_waves.motion("velocity", np.array([0.03]), scene.positions[scene.beside.nodes])[0]
-    np.testing.assert_allclose(ground, expected, atol=1e-12)
-    assert np.abs(ground).max() > 0.01
-    assert scene.beside.columns["total"][0].all()

@@ -10,16 +10,10 @@ from small_cases import GRAINS, small
 from warned_cases import warned
 
 from dembound import api
-from dembound.disks.material.packing_waves import front_of
 from dembound.disks.scene import build
-from dembound.disks.sources import sources_of
-from dembound.disks.stability import step_limit
-from dembound.disks.supports import forces_of
-from dembound.formulas.disks.coarse_grid import Grid, undisturbed
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.summary import describe_layers, describe_side
-from dembound.kinds.disks.wave_warnings import strong_waves
 from dembound.plot.scene import plot_scene
 from dembound.results.vtk import write_paraview
 
@@ -64,17 +58,6 @@ def test_each_layer_has_its_heights_speeds_and_disks_in_a_wavelength() -> None:
     assert dict(disk_facts(above))["layer rock"].startswith("y = -11 to -20 m, ")
 
 
-def test_waves_start_in_the_lowest_layer_and_are_as_fast_as_in_the_fastest() -> None:
-    scene = build(soil())
-    assert strong_waves(scene)["pulse"].startswith("322 kPa, ")  # 2300 · 1400 · 0.1
-    assert front_of(scene.ground, 0.9).speed >= 1400.0
-    assert [source.slowest for source in sources_of(scene.case, scene.ground)] == pytest.approx([200.0])
-    law = {"law": "linearpbond", "fric": 0.5, "contact_share": 0.9}  # loose disks limit the step
-    stiff = step_limit(build(small({**SOIL, "layer": LAYERS[2:]}, changes={f"material.{k}": law[k] for k in law})))
-    limit = step_limit(build(soil(**{f"material__{key}": value for key, value in law.items()})))
-    assert limit == pytest.approx(stiff, rel=0.01)
-
-
 def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
     """S waves of rock are given as 300 m/s, and have 700; of all others as nothing."""
     rock = {"name": "rock", "density": 2300.0, "emod": 2.254e9, "pb_emod": 2.254e9, "s_wave_speed": 300.0}
@@ -102,35 +85,6 @@ def test_a_side_has_factors_by_layer() -> None:
     speed = scene.ground.at(-1.0).wave_speeds(0)[0]
     assert layers[2]["beta_p"] == pytest.approx(speed / nominal * 5.0 / diameters[own].sum(), rel=1e-9)
     assert f"β_P = {layers[2]['beta_p']:g} (matched), " in dict(disk_facts(scene))["left side"].split(" beside clay")[0]
-
-
-def test_ground_beside_sides_is_in_layers() -> None:
-    """A short wave passes two joints with 2Z₁/(Z₁ + Z₂) of its amplitude each, and the surface doubles it."""
-    grid = Grid.of(build(soil(wave__pulse__period=0.02)), 1)
-    step = grid.time_step
-    times = step * np.arange(int(0.09 / step))  # before anything comes back from a joint
-    incoming = np.zeros((len(times), 2))
-    incoming[:, 0] = np.where(times < 0.02, 0.5 - 0.5 * np.cos(100.0 * np.pi * times), 0.0)
-    moved = undisturbed(grid, "bottom", incoming, np.zeros_like(incoming), step)
-    rock, sand, clay = 2300.0 * 700.0, 2000.0 * 350.0, 1800.0 * 200.0
-    expected = 2.0 * (2.0 * rock / (rock + sand)) * (2.0 * sand / (sand + clay))
-    assert moved.v[:, -1, 0].max() == pytest.approx(expected, rel=0.02)
-
-
-def test_a_pressure_on_bonds_is_that_of_the_layer() -> None:
-    hole = {"name": "h", "type": "circle", "centre": [4.0, -11.0], "radius": 2.3}
-    load = {"name": "p", "pressure": 1e5, "hole": "h", "on": "bonds"}
-    packing = GRAINS["packing"] | {"size": [8.0, 20.0], "origin": [0.0, -20.0]}
-    layers = [*LAYERS[:2], LAYERS[2] | {"kratio": 4.0, "pb_kratio": 4.0}]
-    case = soil(packing=packing, hole=[hole], load=[load], layer=layers)
-    scene = build(case)
-    nodes, forces = forces_of(case.load[0], scene)
-    above = scene.positions[nodes, 1] > -11.0
-    for height, chosen in ((-10.0, above), (-12.0, ~above)):
-        alone = build(case.uniform_at(height))
-        same, own = forces_of(case.load[0], alone)
-        np.testing.assert_array_equal(same, nodes)
-        np.testing.assert_allclose(forces[chosen], own[chosen], rtol=1e-9, atol=1e-6)
 
 
 @pytest.fixture(scope="module")

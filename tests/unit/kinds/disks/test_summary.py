@@ -2,37 +2,17 @@
 
 import json
 
-import numpy as np
 import pytest
 
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.kinds.disks.summary import (
     asked_stress,
-    describe_side,
     describe_static,
     summarise_disks,
 )
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
-
-SHEARED = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9, "s_wave_speed": 500.0}
-
-
-def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
-    scene = build(bar({"boundary.right.half_mass": True, "boundary.right.beta_p": 0.9}))
-    disks = {"particles": 2, "length": 1.0, "diameter_min": 0.5, "diameter_mean": 0.5, "diameter_max": 0.5}
-    factors = {"beta_p": 0.9, "beta_s": 1.0, "matched_p": pytest.approx(1.0, rel=1e-12), "matched_s": None}  # y is held
-    expected = {"type": "viscous", "diameter_sum_ratio": 1.0, "half_mass": True, **disks, **factors}
-
-    assert describe_side(scene, "right") == expected
-    assert set(describe_side(scene, "top")) & {"beta_p", "half_mass", "alpha_n"} == set()
-    springs = {"type": "viscoelastic", "source": [0.0, 0.25], "alpha_n": 2.0}
-    found = describe_side(build(bar({"boundary.right": springs, "material": SHEARED})), "right")
-    assert (found["alpha_n"], found["alpha_s"]) == (2.0, 0.5)
-    assert found["shear_modulus"] == pytest.approx(2500.0 * 500.0**2)
-    # disks at 9.75 m, of heights 0.25 m and 0.75 m
-    assert (found["distance_min"], found["distance_max"]) == pytest.approx((9.75, np.hypot(9.75, 0.5)))
 
 
 def test_the_static_stage_is_reported(bar) -> None:
