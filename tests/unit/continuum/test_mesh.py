@@ -50,21 +50,6 @@ def test_columns_and_rows_have_their_sizes() -> None:
     assert set(map(tuple, mesh.shapes.tolist())) == {(w, h) for w in mesh.widths for h in mesh.heights}
 
 
-def test_depth_is_a_share_of_the_thickness_of_unequal_elements() -> None:
-    mesh = uneven()
-    x, y = mesh.positions.T
-    qx = np.maximum((4.0 - x) / 4.0, 0.0) + np.maximum((x - 7.0) / 2.0, 0.0)
-    qy = np.maximum((3.0 - y) / 3.0, 0.0) + np.maximum((y - 7.0) / 4.0, 0.0)
-
-    np.testing.assert_allclose(mesh.depth, np.stack([qx, qy], axis=1), rtol=0.0, atol=1e-14)
-    assert (mesh.held == ((x == 0.0) | (x == 9.0) | (y == 0.0) | (y == 11.0))).all()
-    layers = [np.isin(mesh.elements[:, 0], (0, 1, 4)), np.isin(mesh.elements[:, 1], (0, 3, 4))]
-    assert (mesh.absorbs == np.stack(layers, axis=1)).all()
-    assert mesh.axes[0].thickness == (4.0, 2.0)
-    assert mesh.axes[1].thickness == (3.0, 4.0)
-    assert mesh.inner == 4.0
-
-
 def test_elements_round_a_box_divide_its_sides() -> None:
     """At most the largest size is exceeded by rounding: (0.1 + 0.2)/0.1 is above 3."""
     mesh = Mesh.around((0.0, 0.0, 6.0, 2.5), (2.5, 2.0), margin=Around(1, 2, 1, 0), layer=Around())

@@ -6,7 +6,7 @@ from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.continuum.medium import Layered, Medium
-from dembound.continuum.part import GridPart, stress
+from dembound.continuum.part import GridPart
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
@@ -49,19 +49,6 @@ def test_stress_of_a_uniform_strain(grid, even: bool) -> None:
     expected = body.medium.matrix @ [1e-4, -2e-4, 2e-4]
     np.testing.assert_allclose(values, np.tile(expected, (body.count, 1)), rtol=1e-9)
     assert unit == "Pa"
-
-
-def test_stress_at_a_kink_is_the_mean_by_area(grid) -> None:
-    """Strain a in the element on the left of an edge, 3 m wide, and b on its right, 2.5 m wide."""
-    body = grid(even=False)
-    x = body.mesh.positions[:, 0]
-    edge = 3.0
-    displacement = np.zeros((2, body.count))
-    displacement[0] = np.where(x < edge, 1e-4, 5e-4) * (x - edge)
-    found = stress(body, displacement)[np.abs(x - edge) < 1e-9]
-
-    expected = body.medium.matrix[:, 0] * (3.0 * 1e-4 + 2.5 * 5e-4) / 5.5
-    np.testing.assert_allclose(found, np.tile(expected, (len(found), 1)), rtol=1e-11)
 
 
 def test_supports_that_cannot_be_accounted_for_are_refused(grid) -> None:

@@ -90,13 +90,3 @@ def test_those_that_retire_stay_where_they_are_with_their_energy_accounted_for(f
     # the others do not notice
     rest = ~chosen
     assert np.array_equal(state.displacement[:, rest], fallen[False].run.state.displacement[:, rest])
-
-
-def test_others_pass_them_without_touching(fallen) -> None:
-    falling = fallen[True]
-    pairs = falling.run.system.contacts["body"]
-    here = falling.run.state.displacement.copy()
-    other, gone = int(np.flatnonzero(~falling.far.far)[0]), int(np.flatnonzero(falling.far.far)[0])
-    here[:2, other] += (falling.scene.positions + here[:2].T)[gone] - (falling.scene.positions + here[:2].T)[other]
-    pairs.search(here)
-    assert not (np.transpose(pairs.pairs) == gone).any()

@@ -97,21 +97,6 @@ def test_half_a_hole_beside_a_mirror_has_the_pressure_on_its_opening() -> None:
     assert "of wall of hole h, (9.2, 0) MN/m in all, on" in dict(disk_facts(scene))["load p"]
 
 
-def test_at_a_side_of_half_cells_the_wall_ends_at_their_centres() -> None:
-    half_cells = {"type": "viscous", "half_mass": True}
-    opening = {"type": "rectangle", "corners": [-1.0, 3.0, 2.0, 7.0]}
-    for side, edge in (({"type": "viscous"}, 0.0), (half_cells, 0.25)):
-        scene = pressed(LATTICE, opening, {"boundary.left": side})
-        _, forces = forces_of(scene.case.load[0], scene)
-        upper = forces[:, 1] > 0.0
-        assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - edge), rel=1e-9)
-    # of bonds along the side half
-    scene = pressed(LATTICE, opening, {"boundary.left": half_cells}, on="bonds")
-    _, forces = forces_of(scene.case.load[0], scene)
-    upper = forces[:, 1] > 1e-9 * P
-    assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - 0.25), rel=1e-9)
-
-
 THIN = {"type": "ellipse", "centre": [6.0, 5.0], "semi_axes": [2.0, 0.1]}
 LOST = {"type": "polygon", "points": [[5.0, 5.0], [1e30, 5.0], [5.0, 1e30]]}
 """A hole that is lost in rounding."""

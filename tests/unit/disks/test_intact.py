@@ -35,18 +35,6 @@ def test_a_zone_is_as_many_rows_of_a_lattice(bar, depth) -> None:
     assert np.array_equal(body.intact, (y < 0.5 * depth) | (x < 0.5))
 
 
-def test_a_free_field_column_is_intact_as_a_whole(bar) -> None:
-    sides = {side: {"type": "free_field", "intact": 2} for side in ("left", "right")}
-    body = scene(bar, bottom=BOTTOM, **sides)
-    first = body.column_count
-    assert body.intact is not None
-    assert body.intact[:first].all()
-    assert min(nodes.min() for nodes in body.intact_zones.values()) >= first
-    beside = scene(bar, bottom=BOTTOM | {"intact": 2}, left={"type": "free_field"}, right={"type": "free_field"})
-    assert beside.intact is not None
-    assert not beside.intact[:first].all()
-
-
 def test_a_zone_of_more_than_half_of_the_body_is_refused(bar) -> None:
     assert scene(bar, bottom=BOTTOM | {"intact": 8}).intact is not None
     with pytest.raises(CaseError, match=r"boundary.bottom.intact: is 9: bonds of 180 of 320 disks would not break"):

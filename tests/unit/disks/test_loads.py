@@ -150,26 +150,3 @@ def test_a_force_on_the_continuum_that_cannot_be_is_refused(bar, place: dict, li
         with pytest.raises(CaseError) as error:
             _ = loaded(bar, {"name": "house", "force": [0.0, -1.0], **place, **wave}, **SURROUNDED).steady_load
         assert error.value.problems == [f"load.house{line}"]
-
-
-def test_a_force_on_the_continuum_follows_its_wave(bar) -> None:
-    scene = loaded(bar, on_the_ground([8.5, 3.0, 11.5, 4.0], wave="pulse"), **SURROUNDED)
-    table = scene.supports
-    rows = table.drive_row[table.drive != 0.0]
-    nodes, times = table.node[rows], np.array([0.0, 0.0025, 0.005])
-
-    assert not scene.steady_load.any()
-    assert nodes.min() >= scene.disk_count
-    assert set(nodes) <= set(table.node[(table.component == 2) & table.prescribed])  # nodes do not rotate
-    for axis, force in ((0, 2e3), (1, -5e3)):
-        driven = table.sample(times, 1e-4)[:, table.component == axis].sum(axis=1)
-        np.testing.assert_allclose(driven, force * np.array([0.0, 0.25, 0.5]), atol=1e-9)
-    # the same motion as by the steady part, as a step without a force before it
-    flat = {"type": "constant", "amplitude": 1.0}
-    driven, steady = (
-        loaded(bar, on_the_ground([8.5, 3.0, 11.5, 4.0], **wave), **SURROUNDED, **{"wave.flat": flat})
-        for wave in ({"wave": "flat"}, {})
-    )
-    moved = [Simulation(each, 1e-4, np.arange(each.count)).advance(20) for each in (driven, steady)]
-    assert np.abs(moved[1]).max() > 0.0
-    np.testing.assert_allclose(moved[0], moved[1], rtol=0.0, atol=1e-12 * np.abs(moved[1]).max())

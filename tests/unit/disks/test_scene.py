@@ -38,11 +38,6 @@ def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -
 
 
 TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}
-STANDING = {
-    "static": {"boundary": {"bottom": {"type": "fixed"}}},
-    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
-}
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 
 
 def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) -> None:
@@ -58,21 +53,6 @@ def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) 
         assert np.array_equal(left.positions, edge.positions)
         assert np.array_equal(hollow.assembly.positions[left.nodes], left.positions)
         assert left.length == edge.length
-
-
-@pytest.mark.parametrize("boundary", [{}, FREE_FIELD], ids=["free", "free field"])
-def test_an_excavated_scene_knows_what_was_before(bar, boundary: dict) -> None:
-    tables = {**RANDOM, **STANDING, "boundary": boundary, "wave": {}}
-    shaft = {"name": "shaft", "type": "rectangle", "corners": [8.5, 4.0, 10.5, 6.0]}
-    scene = build(bar({**tables, "hole": [shaft, {**TUNNEL, "stage": "after"}]}))
-    before, after = build(bar({**tables, "hole": [shaft]})), build(bar({**tables, "hole": [shaft, TUNNEL]}))
-
-    for found, expected in ((scene, after), (scene.before, before)):
-        assert np.array_equal(found.assembly.positions, expected.assembly.positions)
-        assert np.array_equal(found.assembly.pairs, expected.assembly.pairs)
-        assert found.monitors == expected.monitors
-    assert np.array_equal(scene.before.assembly.positions[scene.kept], scene.assembly.positions)
-    assert scene.before.before is None
 
 
 def test_holes_that_leave_nothing_are_refused(bar) -> None:

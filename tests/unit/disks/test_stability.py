@@ -64,14 +64,6 @@ def test_an_automatic_step_is_the_share_of_the_limit_asked_for_and_a_given_one_i
     assert f"{limit:.6g}" in problem
 
 
-def test_a_scene_in_which_nothing_vibrates_needs_a_step_of_its_own(bar) -> None:
-    still = {"boundary.left": {"type": "fixed"}, "packing.size": [0.5, 0.5], "monitor": []}
-    with pytest.raises(CaseError, match=r"run\.time_step: .*give a step in s"):
-        choose_step(given(bar, "auto", **still))
-
-    assert choose_step(given(bar, 1e-3, **still)) == (1e-3, np.inf)
-
-
 @pytest.mark.parametrize(("fric", "most"), [(0.0, 6.0), (0.5, 24.0)])
 def test_the_smallest_disks_of_loose_ground_may_come_to_lie_together(bar, fric: float, most: float) -> None:
     packing = {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]}

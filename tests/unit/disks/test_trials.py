@@ -7,7 +7,7 @@ from small_cases import PULLED, SURROUNDED, small
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
-from dembound.disks.trials import PARTICLES, UNLOADED
+from dembound.disks.trials import PARTICLES
 from dembound.kinds import kind_of
 
 
@@ -40,17 +40,6 @@ def test_a_large_scene_is_a_reduced_copy_with_the_same_sides(bar) -> None:
     assert [word for word in words if "holes" in word]
     width, height = reduced.scene.size
     assert width / height == pytest.approx(10.0, rel=0.3)
-
-
-def test_a_law_with_a_history_is_measured_beside_its_linear_one(bar) -> None:
-    found, words = trials(bar({"material.law": "linearpbond"}))
-
-    assert [(trial.name, trial.is_linear) for trial in found] == [("elastic", True), ("linearpbond, unloaded", False)]
-    assert UNLOADED in words
-    pressed, words = trials(bar({"material.law": "linearpbond", "material.contact_share": 0.0}))  # nothing opens
-    assert (pressed[1].name, UNLOADED in words) == ("linearpbond", False)
-    assert found[1].limit == pytest.approx(np.sqrt(0.75 / 1.05) * found[0].limit, rel=1e-3)
-    assert any("no bond breaks" in word for word in words)
 
 
 def test_a_bar_is_measured_at_every_stage_of_its_method() -> None:

@@ -60,23 +60,6 @@ def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: floa
         assert entry.stepping == pytest.approx(ledger.entries[0].stepping, rel=1e-12)
 
 
-def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
-    scene = build_bar(spalling({"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}))
-    simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
-    ledger = booked(simulation)
-    simulation.advance(11)
-    place = simulation.state.displacement[0].copy()
-    simulation.advance(1)
-    entry, bonds = ledger.entries[-1], simulation.system.parts[0].bonds
-
-    stretched = [place[p:] - place[:-p] for p in (1, 2, 3)]
-    assert entry.contact == pytest.approx(0.5 * np.sum(bonds.spring * stretched[0] ** 2), rel=1e-12)
-    of_bonds = sum(0.5 * np.sum(bonds.bond[p, : 40 - p] * each**2) for p, each in enumerate(stretched))
-    assert entry.bond == pytest.approx(of_bonds, rel=1e-12)
-    # twelve steps of sums over 41 nodes and 120 bonds
-    assert abs(entry.error) < 12 * 41 * np.finfo(float).eps * entry.outside
-
-
 def at_rest(bar, **changes: object) -> Simulation:
     """A body as built, taken as settled."""
     scene = build(bar(changes))

@@ -1,37 +1,17 @@
 """The continuum round disks of layered ground: rows of elements, densities, and ties."""
 
 import numpy as np
-import pytest
 from small_cases import small
 
-from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Layered, Medium
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.disks.surroundings.mesh import medium_of
-from dembound.disks.surroundings.settings import Settings, mesh_of
 from dembound.packings.cut import cut_contacts
 
 ROCK, SOIL = Medium.isotropic(2300.0, 1400.0, 700.0), Medium.isotropic(1800.0, 400.0, 200.0)
-BOX = (0.0, 0.0, 20.0, 30.0)
-SETTINGS = Settings(4, 10.0, 0.0, 1, 3, Absorption(), 0.1, taller=(2.0, 1.0), beside=(1.0, 1.0, 3.0))
 SIDES = ("left", "right", "bottom")
-
-
-def heights(joint: float, **more: float) -> list[float]:
-    mesh = mesh_of(SETTINGS, BOX, SIDES, (10.0, 10.0), ground=Layered((ROCK, SOIL), (joint,)), **more)
-    assert mesh.layer == (3, 3, 3, 0)
-    assert mesh.widths == (30.0, *(10.0,) * 8, 30.0)
-    assert mesh.origin[0] == -60.0
-    assert mesh.sides == pytest.approx((BOX[0], BOX[2], BOX[1], BOX[3]), abs=1e-9)
-    return list(mesh.heights)
-
-
-def test_rows_end_at_joints_beside_and_below_the_box() -> None:
-    assert heights(-25.0) == pytest.approx([20.0] * 4 + [25.0 / 3.0] * 3 + [10.0] * 3)
-    assert heights(24.0) == pytest.approx([20.0] * 4 + [12.0] * 2 + [6.0])
-    assert heights(10.0, surface=45.0)[-2:] == pytest.approx([7.5] * 2)
 
 
 CASE = {

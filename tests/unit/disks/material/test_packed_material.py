@@ -87,22 +87,6 @@ def test_bonds_of_a_lattice_have_their_share_of_its_stiffness() -> None:
     assert ground(lattice(), contact_share=0.0).bond_share == pytest.approx(1.0, rel=SOLVE)
 
 
-def test_of_a_random_brick_the_smaller_share_along_x_or_y_counts(random_brick: Brick) -> None:
-    whole = ground(random_brick, contact_share=0.4, fric=0.5)
-    density_only = {key: value for key, value in MATERIAL.items() if key == "density"}
-    bonds = Material(**density_only, emod=0.0, pb_emod=whole.moduli.pb_emod, fric=0.5)
-    alone = make_packed_material(random_brick, bonds, ()).tensor
-    shares = [alone[axis, axis] / whole.tensor[axis, axis] for axis in (0, 1)]
-
-    assert whole.bond_share == pytest.approx(min(shares), rel=SOLVE)
-    assert max(shares) - min(shares) > 1e-4
-    # not the bonds' 0.6: a brick without contacts relaxes otherwise
-    assert abs(whole.bond_share - 0.6) > 1e-3
-    # a material's own, whatever translation the scene holds
-    assert ground(random_brick, ("y",), contact_share=0.4, fric=0.5).bond_share == whole.bond_share
-    assert ground(random_brick, ("rotation",), contact_share=0.4, fric=0.5).bond_share != whole.bond_share
-
-
 def test_disks_that_only_touch_cannot_be_locked_in() -> None:
     with pytest.raises(CaseError, match=r"material\.locked_in: needs disks that were packed under stress"):
         ground(lattice(), law="linearpbond", locked_in=1e6)

@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
-from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WEIGHT, G, scene
 from small_cases import SURROUNDED, small
 
 from dembound.boundaries.edge import SIDES
 from dembound.disks.rest.loading import LOOK
 from dembound.disks.rest.stage import require_stages, settle
-from dembound.disks.rest.static_scene import StaticScene
-from dembound.disks.scene import DiskScene, build, column_alone
+from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kernels.contacts import TENSION
 
@@ -40,32 +38,8 @@ def test_a_lattice_sinks_under_its_weight_as_its_columns_say(bar, law: str) -> N
     assert (settled.column, settled.before, len(body.supports)) == (None, None, 0)
 
 
-SHAFT = {"name": "shaft", "type": "rectangle", "corners": [1.0, 1.0, 2.0, 3.0], "stage": "after"}
-TOWER = {**WEIGHT, "packing.size": [3.0, 4.0], "motion.held": ["x", "rotation"]}
 TOUGH = {"material.law": "linearpbond", "material.fric": 0.5}
 LAWS = {"elastic": {}, "linearpbond": TOUGH, "with a history": {**TOUGH, "material.elastic_start": False}}
-
-
-@pytest.mark.parametrize("law", [LAWS["elastic"], LAWS["with a history"]], ids=["elastic", "with a history"])
-def test_an_excavated_body_settles_before_and_after(bar, law: dict) -> None:
-    body = scene(bar, **{**TOWER, **law, "hole": [SHAFT]})
-    looks: list[tuple[int, float]] = []
-    settled = settle(body, lambda steps, ratio, _: looks.append((steps, ratio)))
-    whole = settle(scene(bar, **{**TOWER, **law}))
-
-    assert settled.before is not None
-    assert settled.before.before is None
-    assert np.array_equal(settled.before.start.displacement, whole.start.displacement)
-    assert (settled.before.steps, settled.before.ratio) == (whole.steps, whole.ratio)
-    assert [looks.count(stage) for stage in ((whole.steps, whole.ratio), (settled.steps, settled.ratio))] == [1, 1]
-    assert settled.ratio <= 1e-8
-    # 8 of 48 disks are gone: six at the base carry 40 weights in place of 48
-    assert settled.before.mean_reaction == pytest.approx(8.0 * MASS * G, rel=1e-6)
-    assert settled.mean_reaction == pytest.approx(40.0 / 6.0 * MASS * G, rel=1e-6)
-    assert bool(settled.start.contacts) == body.has_history
-    for contacts in settled.start.contacts.values():
-        assert np.array_equal(contacts.assembly.positions, body.positions)
-        assert np.array_equal(contacts.assembly.pairs, body.assembly.pairs)
 
 
 def test_bonds_may_break_on_the_way_and_stay_broken(bar) -> None:
@@ -87,48 +61,6 @@ def test_bonds_may_break_on_the_way_and_stay_broken(bar) -> None:
     assert weak.start.has_history
     assert len(settled.cracks) == 0
     assert np.count_nonzero(settled.start.contacts["body"].arrays.state == TENSION) == 1
-
-
-NICHE = {"hole": [{"name": "niche", "type": "circle", "centre": [2.0, 4.0], "radius": 0.7}]}
-"""A hole in the top, beside which the ground comes to rest otherwise than the column."""
-
-LOCKED_IN = {"material.law": "linearpbond", "material.locked_in": 10e6}
-
-
-def packed_ground(bar, sides: str | None, **changes: object) -> DiskScene:
-    """A packed brick between free-field sides, whose cut top relaxes; `sides` is the static table of left and right."""
-    supports = {"bottom": FIXED} | ({} if sides is None else {side: {"type": sides} for side in ("left", "right")})
-    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
-    static = {"ratio": 1e-7, "boundary": supports}
-    return scene(bar, packing=DENSE, boundary=boundary, static=static, **LOCKED_IN, **changes)
-
-
-def damping(ground: DiskScene, nodes: np.ndarray) -> np.ndarray:
-    """Dashpot constants (2, k) N·s/m along x and y on nodes (k,)."""
-    found = np.zeros((3, ground.count))
-    found[ground.supports.component, ground.supports.node] = ground.supports.damping
-    return found[:2, nodes]
-
-
-def test_beside_a_free_field_the_column_settles_first_and_alone(bar) -> None:
-    ground = packed_ground(bar, None, **NICHE)
-    looks: list[tuple[int, float]] = []
-    settled = settle(ground, lambda steps, ratio, _: looks.append((steps, ratio)))
-    alone = settle(column_alone(ground))
-
-    assert settled.column is not None
-    assert np.array_equal(settled.column.start.displacement, alone.start.displacement)
-    assert (settled.column.steps, settled.column.ratio) == (alone.steps, alone.ratio)
-    assert looks.index((alone.steps, alone.ratio)) == alone.steps // LOOK - 1
-    assert len(looks) == (alone.steps + settled.steps) // LOOK
-    # with dashpots, which outdo local damping, the body creeps into place, unless the stage has its own side
-    free = packed_ground(bar, "free", **NICHE)
-    beside = np.setdiff1d(ground.edges["right"].nodes, ground.edges["bottom"].nodes)
-    own, given = (damping(StaticScene(each, each.case.static).scene, beside) for each in (ground, free))
-    assert np.all(own > 0.0)
-    assert np.array_equal(own, damping(ground, beside))
-    assert not given.any()
-    assert settled.steps > settle(free).steps
 
 
 @pytest.mark.parametrize(

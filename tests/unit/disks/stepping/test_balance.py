@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import BODY, fitted, turn
+from disk_systems import BODY, fitted
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -77,36 +77,6 @@ def isolate(parts: tuple[DiskPart, ...], particles: list[int]) -> None:
         pairs = part.pairs
         broken = np.isin(pairs.first, particles) | np.isin(pairs.second, particles)
         pairs.state[broken], pairs.cracked[broken] = TENSION, 1
-
-
-def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
-    """The column does not end at the level of the box, whose lower and upper side have the disks with ties there.
-
-    A rigid rotation of the box relative to its column turns all forces by its angle, so that a pressure from all sides,
-    through the ground or as a load, has no torque on it.
-    """
-    sides = {side: {"type": "outside"} for side in OPPOSITE}
-    sides["bottom"] |= {"wave_s": "pulse"}
-    pulse = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
-    ground = {"ground": {"size": [6.5, 8.0]}, "outside": {"element": 2.0}, "wave": {"pulse": pulse}}
-    body = scene(LATTICE | {"origin": [2.0, 2.0]}, ground, **sides)
-    box, positions = np.arange(body.seam.count, body.disk_count), body.positions.T[:2]
-    arm = positions - positions[:, box].mean(axis=1, keepdims=True)
-    across, still = np.zeros((3, body.count)), np.zeros((3, body.count))
-    for axis in (0, 1):  # a pressure
-        low, high = positions[axis, box].min(), positions[axis, box].max()
-        across[axis, box] = np.isclose(positions[axis, box], low) * 1.0 - np.isclose(positions[axis, box], high)
-    angle = 1e-3
-    moved = still.copy()
-    moved[:2, box] = (turn(angle) - np.eye(2)) @ arm[:, box]
-
-    assert mean_rotations(body, moved) == pytest.approx(dict.fromkeys(OPPOSITE, angle), rel=1e-9)
-    balance, load = Balance(body, still, still, still, across), still.copy()
-    turn_forces(balance.followers, moved, still, load, STEP)
-    np.testing.assert_allclose((across + load)[:2], turn(angle) @ across[:2], rtol=0.0, atol=1e-15)
-    places = arm + moved[:2]
-    torque = np.sum(places[0] * (across + load)[1] - places[1] * (across + load)[0])
-    assert abs(torque) < 1e-12
 
 
 def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:

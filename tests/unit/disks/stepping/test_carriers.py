@@ -6,7 +6,7 @@ from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, shaken
 
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.balance import Balance
-from dembound.disks.stepping.carriers import carried, carriers_of, on_side, standing
+from dembound.disks.stepping.carriers import carriers_of, on_side, standing
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 
@@ -65,30 +65,6 @@ def test_breaks_at_random_leave_the_sum_of_forces_of_every_side(scene, sides) ->
     assert ended[-1] > 10
     np.testing.assert_allclose(sums(), before, rtol=0.0, atol=1e-12)  # some thirty terms of size 1
     assert standing(carriers, ~balance.force[:2].any(axis=0), balance.force).all()
-
-
-@pytest.mark.parametrize(("size", "exact"), [(1.0, True), (1e-3, False)])
-def test_the_torque_of_what_is_lost_is_carried_as_far_as_no_disk_bears_more_than_before(scene, size, exact) -> None:
-    body = scene()
-    carriers, lost = carriers_of(body), np.zeros((3, body.count))
-    left = next(each for each in carriers if each.side == "left")
-    node = int(left.nodes[2])
-    lost[:, node] = [1.0, 0.3, 0.2]
-    ended = none_of(body)
-    ended[node] = True
-    sizes, stands = np.full(body.count, size), np.ones(len(carriers), dtype=np.bool_)
-    found = carried(carriers, lost, body.positions.T, ended, ended, sizes, stands)
-    x, y = body.positions.T
-
-    def resultant(force: np.ndarray) -> np.ndarray:
-        return np.array([*force[:2].sum(axis=1), np.sum(x * force[1] - y * force[0]) + force[2].sum()])
-
-    assert np.isin(np.flatnonzero(found.any(axis=0)), left.nodes).all()
-    assert not found[:, node].any()
-    np.testing.assert_allclose(resultant(found)[:2], resultant(lost)[:2], rtol=1e-14)
-    assert bool(abs(resultant(found)[2] - resultant(lost)[2]) < 1e-13) is exact
-    equal = lost[:2].sum(axis=1) / (len(left.nodes) - 3)  # two corners bear nothing along the side
-    assert np.hypot(*(found[:2, left.nodes].T - equal).T).max() < size + np.hypot(*equal)
 
 
 def test_a_side_that_has_lost_half_of_its_forces_carries_no_more_nor_does_the_opposite_one(scene) -> None:

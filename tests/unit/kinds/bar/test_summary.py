@@ -85,20 +85,6 @@ def test_a_bar_torn_off_the_end_that_holds_it_has_not_spalled(run, held: dict) -
     assert found["breaks_at_ends"]["right"]["time"] > 1e-3
 
 
-def test_largest_stresses_are_those_a_gauge_has_felt(run) -> None:
-    hit = {"name": "hit", "pressure": 12e6, "wave": "hit"}
-    changes = {"bar.strength": 1e9, "method": {"type": "finite_difference"}, "load": [hit]}
-    for duration, tension in ((1e-4, 0.0), (1.4e-3, 0.0), (2e-3, 12e6)):
-        planned, simulation, path = run(**changes, **{"run.duration": duration})
-        (gauge,) = summarise_bar(planned.scene, simulation, path)["stress"].values()
-
-        # cΔt = Δx carries the pulse as it is, its crest sampled after eight steps; rounding adds up over 80 steps
-        came = -12e6 if duration > 1e-3 else 0.0
-        assert gauge["compression"] == pytest.approx(came, rel=80**2 * np.finfo(float).eps)
-        # from the free end it comes back as tension, to the gauge at 1.475 ms
-        assert gauge["tension"] == pytest.approx(tension, abs=80**2 * np.finfo(float).eps * 12e6)
-
-
 def gauges(*places: float) -> dict:
     return {"monitor": [{"name": f"at-{place:g}", "position": place} for place in places]}
 

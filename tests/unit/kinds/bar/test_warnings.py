@@ -133,22 +133,6 @@ def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
         assert not list(ends_too_soon(spalling({**changes, **later, "run.duration": 2.3e-3})))
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        UNBROKEN,
-        {"boundary.right": {"type": "viscous"}},
-        {"boundary.right": {"type": "fixed"}},
-        {"load": []},
-        {"load": [{"name": side, "pressure": 12e6, "wave": "hit", "side": side} for side in ("left", "right")]},
-        blow(-12e6),  # which breaks it on the way
-    ],
-    ids=str,
-)
-def test_there_is_nothing_to_wait_for(spalling, changes: dict) -> None:
-    assert list(ends_too_soon(spalling({"run.duration": 1e-4, **changes}))) == []
-
-
 STRIKER = [
     {"name": "striker", "length": 0.2, "velocity": 5.0},
     {"name": "rod", "length": 0.4, "interface": "contact"},
@@ -172,15 +156,6 @@ def test_a_striker_that_is_bonded_is_warned_of(interface: str, velocity: float, 
     case = with_ranges([STRIKER[0], STRIKER[1] | {"interface": interface, "velocity": velocity}], {"duration": 1e-3})
     said = 'bar.range[2, rod].interface: is "bonded", while striker has 5 m/s at the start and rod 0 m/s: they pull'
     assert [line[: len(said)] for line in warned(case) if "interface" in line] == doubtful * [said]
-
-
-def test_monitors_in_gaps_are_warned_of() -> None:
-    # ranges end at 0.2 m and begin at 0.25 m
-    monitors = [{"name": str(place), "position": place} for place in (0.2, 0.21, 0.25)]
-    case = with_ranges([STRIKER[0], STRIKER[1] | {"gap": 0.05}], {"duration": 1e-3}, monitor=monitors)
-    assert [line for line in warned(case) if line.startswith("monitor")] == [
-        "monitor.0.21: is at 0.21 m, in the gap from 0.2 to 0.25 m between two ranges; it records the node at 0.25 m"
-    ]
 
 
 @pytest.mark.parametrize(

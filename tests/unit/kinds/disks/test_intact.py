@@ -66,21 +66,6 @@ def test_a_load_that_lasts_creeps_on_dashpots_and_the_weight_that_leaves_too() -
     assert len(lasting) == 2
 
 
-@pytest.mark.parametrize(
-    "boundary",
-    [
-        FREE_FIELD | {"bottom": BOTTOM},  # springs to the column
-        VISCOUS | {"bottom": {"type": "fixed"}},
-        VISCOUS | {"bottom": {"type": "viscoelastic_input", "wave_s": "pulse", "distance": 9.0}},
-        {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-    ],
-)
-def test_what_is_held_does_not_creep(boundary) -> None:
-    body = scene(boundary, load=[WEIGHT, PUSH], wave=WAVES, static={"boundary": {"bottom": {"type": "fixed"}}})
-    assert creep(body, 1) is None
-    assert not any("y:" in said or "weight" in said for said in intact_warnings(body))
-
-
 FOUND = {
     "work": {"size": 0.06, "side": "left", "time": 0.5},
     "turn": {"size": 0.2, "side": "right", "time": 0.25},

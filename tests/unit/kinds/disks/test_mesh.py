@@ -59,20 +59,6 @@ def test_meshio_and_vtk_read_back_what_the_record_holds(small_run, exported):
             np.testing.assert_array_equal(found.point_data[name], values, err_msg=name)
 
 
-def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
-    write_paraview(rich_run, tmp_path, Disks())
-    with h5py.File(rich_run) as file:
-        for number, snapshot in file["snapshots"].items():
-            mesh = pyvista.read(tmp_path / f"particles_{number}.vtu")
-            xx, yy, xy = snapshot["stress"][:].T
-            zero = np.zeros_like(xx)
-            # VTK's order: xx, yy, zz, xy, yz, xz
-            tensors = np.array([xx, yy, zero, xy, zero, zero], dtype=np.float32)
-            np.testing.assert_array_equal(mesh.point_data["stress"].T, tensors)
-            peaks = file["particles/peak_velocity"][:].astype(np.float32)
-            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], peaks)
-
-
 def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
     write_paraview(cracked_run, tmp_path, Disks())
     with h5py.File(cracked_run) as file:

@@ -93,11 +93,6 @@ def test_a_wave_beyond_a_limit_has_one_warning(bar, tables: dict, within: dict, 
     assert [line.removeprefix("wave.pulse: ")[: len(said)] for line in loud] == [said]
 
 
-def test_without_a_stress_or_a_strength_there_is_nothing_to_compare_with(bar) -> None:
-    for changes in (strong(4.0), strong(1e-9), {"material.law": "linearpbond"}):
-        assert warned(bar(SLOW | changes)) == []
-
-
 def test_steady_stresses_beside_strength_and_stiffness(bar) -> None:
     # 2.5 GPa, of which a body of 1 m under 1e5 g has 98 %; the law with a history is for large strains
     (line,) = (line for line in warned(bar(TWO_WAYS | weight(-9.81e5))) if "law is for small strains" in line)
