@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried
+from meshes import ORDER, below, buried, stepped
 
-from dembound.continuum.edges import edge_lengths, free_edges
+from dembound.continuum.edges import edge_lengths, free_edges, traction_in
 from dembound.continuum.mesh import Around, Mesh
 
 
@@ -35,3 +35,70 @@ def test_the_surface_is_what_is_free_beyond_the_box() -> None:
         order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(bottom=1)
     )
     assert (free_edges(round_a_pipe)[:, [1, 3]] == 2.0).all()
+
+
+TOP = 2.0
+
+
+def ground() -> Mesh:
+    """Round a box of 6 m × 2 m at the surface y = 2 m; elements 3 m wide, layers beyond x = −6 m and 15 m."""
+    return Mesh.around((0.0, 0.0, 6.0, TOP), (3.0, 2.0), 4, margin=Around(2, 3, 1, 0), layer=Around(1, 1, 1, 0))
+
+
+@pytest.mark.parametrize(("first", "last"), [(6.0, 15.0), (7.1, 10.1), (8.0, 13.7), (-6.0, -3.0), (-5.2, -0.7)])
+def test_forces_are_those_of_a_uniform_traction(first: float, last: float) -> None:
+    mesh = ground()
+    traction = traction_in(mesh, (first, 1.9, last, 2.5))
+    x, y = mesh.positions[traction.node].T
+
+    assert (y == TOP).all()
+    assert traction.length == pytest.approx(last - first, rel=1e-12)
+    assert traction.least == pytest.approx(3.0, rel=1e-12)
+    assert not traction.absorbs
+    # shape functions of order 4 have all of these polynomials, whose means over the width follow
+    for power in range(5):
+        mean = (last ** (power + 1) - first ** (power + 1)) / ((power + 1) * (last - first))
+        assert traction.share @ x**power == pytest.approx(mean, rel=1e-11)
+
+
+def test_sides_of_the_box_and_inner_edges_are_no_surface() -> None:
+    mesh = ground()
+
+    assert traction_in(mesh, (0.0, 1.0, 6.0, 2.0)).length == 0.0  # the body's own surface
+    assert traction_in(mesh, (7.0, -1.0, 12.0, 1.9)).length == 0.0
+    assert len(traction_in(mesh, (7.0, -1.0, 12.0, 1.9)).node) == 0
+    below = Mesh.around((0.0, 0.0, 6.0, TOP), (3.0, 2.0), 4, margin=Around(0, 0, 2, 0), layer=Around(0, 0, 1, 0))
+    side = traction_in(below, (-1.0, -3.5, 0.5, -0.5))  # the left edge below the body is free
+    x, y = below.positions[side.node].T
+    assert (x == 0.0).all()
+    assert side.length == pytest.approx(3.0, rel=1e-12)
+    assert side.least == pytest.approx(2.0, rel=1e-12)
+    assert side.share @ y == pytest.approx(-2.0, rel=1e-12)
+
+
+def test_layers_are_not_loaded() -> None:
+    mesh = ground()
+    traction = traction_in(mesh, (11.0, 2.0, 16.0, 2.0))
+
+    assert traction.absorbs
+    assert mesh.positions[traction.node, 0].max() == 15.0
+    assert traction_in(mesh, (-9.0, -6.0, 18.0, -1.5)).absorbs is False  # outer edges of layers are held
+
+
+def test_a_surface_of_two_heights_has_tractions_at_both() -> None:
+    """3 m at the left and 5 m at the right, where the ground ends 0.3 m and 0.1 m above."""
+    mesh = stepped()
+    depth = {"top": np.where(mesh.positions[:, 0] < 3.0, 0.3, 0.1)}
+
+    for region, length in (
+        ((-4.0, 2.9, 20.0, 3.4), 4.0),
+        ((-4.0, 3.2, 20.0, 3.4), 4.0),
+        ((-4.0, 3.4, 20.0, 5.05), 3.0),
+        ((-4.0, 5.2, 20.0, 9.0), 0.0),
+        ((-4.0, 2.0, 20.0, 9.0), 7.0),
+    ):
+        traction = traction_in(mesh, region, depth)
+        assert traction.length == pytest.approx(length, abs=1e-12)
+        assert set(mesh.positions[traction.node, 1]) <= {3.0, 5.0}
+    assert traction.share.sum() == pytest.approx(1.0, rel=1e-12)
+    assert traction.absorbs  # beyond x = 9 m

@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from small_cases import GROUND, Tables, small
 
-from dembound.disks.scene import build
+from dembound.casefile import Case
+from dembound.disks.scene import DiskScene, build
 from dembound.disks.sides import boundary_medium
+from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError, PackingError
 
 RANDOM = {
@@ -63,3 +66,116 @@ def test_holes_that_leave_nothing_are_refused(bar) -> None:
     ):
         with pytest.raises(error, match=line):
             build(bar({**tables, "hole": [{"name": "pit", "type": "rectangle", "corners": corners}]}))
+
+
+BESIDE = {"type": "free_field"}
+BASE = {"type": "viscous_input", "wave_s": "pulse"}
+TWO_BRICKS = {"size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]}
+PACKINGS = {
+    "A": {"pattern": "A", "size": [4.0, 3.0], "radius": 0.25},
+    "B": {"pattern": "B", **TWO_BRICKS},
+    "C": {"pattern": "C", **TWO_BRICKS, "edge_radius": 0.26},
+}
+
+
+@pytest.fixture
+def ground(bar):
+    """Makes ground between free-field sides, shaken from below."""
+
+    def make(pattern: str = "A", **changes: object) -> Case:
+        boundary = {"left": BESIDE, "right": BESIDE, "bottom": BASE}
+        tables = {"packing": PACKINGS[pattern], "boundary": boundary, "monitor": [], "motion.held": []}
+        return bar({**tables, **changes})
+
+    return make
+
+
+def test_each_monitor_has_a_twin_in_the_column(ground) -> None:
+    monitors = [{"name": "wall", "position": [0.1, 1.2]}, {"name": "crown", "position": [2.2, 2.9]}]
+    scene = build(ground(monitor=monitors))
+
+    assert list(scene.monitors) == ["wall", "crown", "wall.free_field", "crown.free_field"]
+    for name, place in (("wall", [0.25, 1.25]), ("crown", [2.25, 2.75])):
+        node, twin = scene.monitors[name], scene.monitors[f"{name}.free_field"]
+        assert scene.assembly.positions[node].tolist() == place
+        assert twin == scene.seam.twin[node] < scene.seam.count
+        assert scene.assembly.positions[twin, 1] == place[1]
+
+
+@pytest.mark.parametrize("pattern", PACKINGS)
+def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str) -> None:
+    width, height = PACKINGS[pattern]["size"]
+
+    def hollow(left: float, right: float) -> DiskScene:
+        corners = [left, 0.4 * height, right, 0.6 * height]
+        return build(ground(pattern, hole=[{"name": "niche", "type": "rectangle", "corners": corners}]))
+
+    # between the sides: no disk that is cut loose, and none that a contact ties to the outside, is taken
+    scene = hollow(0.3 * width, 0.7 * width)
+    whole = build(ground(pattern))
+    assert scene.count < whole.count
+    assert np.array_equal(scene.seam.neighbour, whole.seam.neighbour)
+    for side, left, right in (("left", -1.0, 0.1 * width), ("right", 0.9 * width, width + 1.0)):
+        with pytest.raises(CaseError, match=rf"hole\[1, niche\]: reaches boundary.{side}, where the free field has no"):
+            hollow(left, right)
+
+
+BOX: Tables = GROUND | {
+    "ground": {"size": [40.0, 30.0]},
+    "packing": {
+        "pattern": "B",
+        "size": [12.0, 12.0],
+        "origin": [14.0, 6.0],
+        "brick": [6.0, 6.0],
+        "radius": 0.5,
+        "radius_ratio": 1.5,
+    },
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+    "outside": {"element": 6.0},
+}
+WAVE = {"boundary.bottom.wave_s": "w"}
+WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
+
+
+def case(**changes) -> Case:
+    return small(BOX, changes=changes)
+
+
+def scene(*changes: dict) -> DiskScene:
+    return build(case(**{key: value for each in changes for key, value in each.items()}))
+
+
+@pytest.fixture(scope="module")
+def shaken() -> DiskScene:
+    return scene(WAVE)
+
+
+def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) -> None:
+    mesh = shaken.outside.body.mesh
+    offset = shaken.ground.brick.mass_offset
+    assert box_of(shaken.assembly.part(slice(shaken.seam.count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
+    assert shaken.outside.box == (14.0, 6.0, 26.0, 18.0)
+    surface = 30.0 + offset[1]
+    assert mesh.positions[:, 1].max() == pytest.approx(surface, abs=0.5)  # less the packing's skin
+    assert mesh.positions[:, 1].min() == pytest.approx(6.0 + offset[1] - 4 * 6.0, abs=1e-9)
+    assert (shaken.foot.box[1], shaken.foot.sides) == (0.0, ("bottom",))
+
+
+def test_a_hole_that_reaches_a_side_is_refused() -> None:
+    hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": "after"}
+    with pytest.raises(CaseError, match=r"^hole\[1, shaft\]: reaches boundary.top, where the continuum has no hole"):
+        scene({"hole": [hole]}, WEIGHT)
+
+
+def test_between_box_and_surface_there_is_room_for_an_element() -> None:
+    lattice = {"packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0], "origin": [14.0, 14.0]}}
+    with pytest.raises(CaseError) as caught:
+        scene(lattice)
+    (line,) = caught.value.problems
+    assert line == (
+        "packing.origin: the disks end 4 m below the surface of the ground; they must reach it, or end at least 5 m "
+        "below, the smallest useful element"
+    )
+    up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    lattice["packing"]["origin"] = [14.0, 18.0]
+    assert scene(lattice, {"boundary": up_to_it}).outside.count > 0

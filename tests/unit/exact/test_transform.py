@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import transform as module
-from dembound.exact.transform import respond
+from dembound.exact.transform import decaying_ratios, growing_ratios, respond
 
 PERIOD, DELAY, RATE = 0.5, 0.2, 3.0
 
@@ -56,3 +56,13 @@ def test_before_it_arrives_a_response_is_small_beside_its_usual_size() -> None:
 def test_a_velocity_that_jumps_does_not_converge() -> None:
     with pytest.raises(RuntimeError, match="does not converge to 1e-06"):
         respond(late, lambda t: 1.0 * (t < 0.1), np.linspace(0.0, 1.0, 500), 1e-6, [0.0], most=2**14)
+
+
+def test_orders_of_thousands_obey_the_wronskian() -> None:
+    """Orders above those of cavities, whose motion other tests check."""
+    # I_n K_(n+1) + I_(n+1) K_n = 1/z, so (K_(n+1)/K_n + I_(n+1)/I_n) falls with I_n K_n → 1/2n
+    z, orders = np.array([0.2 + 3.0j, 0.2 + 1500.0j]), 4000
+    product = 1.0 / (z * (decaying_ratios(z, orders) + growing_ratios(z, orders)))
+    assert np.isfinite(product).all()
+    # Debye's expansion: I_n K_n = 1/(2√(n² + z²)) (1 + O(1/n²))
+    np.testing.assert_allclose(product[-1], 0.5 / np.sqrt((orders - 1) ** 2 + z**2), rtol=1e-6)

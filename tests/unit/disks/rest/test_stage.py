@@ -2,15 +2,18 @@
 
 import numpy as np
 import pytest
-from settling import FIXED, MASS, STANDING, WEIGHT, G, scene
+from disk_systems import DENSE
+from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 from small_cases import SURROUNDED, small
 
 from dembound.boundaries.edge import SIDES
+from dembound.disks.rest import stage
 from dembound.disks.rest.loading import LOOK
 from dembound.disks.rest.stage import require_stages, settle
 from dembound.disks.scene import build
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import TENSION
+from dembound.motion.kind import StalledError
 
 K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m."""
@@ -105,7 +108,120 @@ def test_contacts_that_slide_come_closer_to_rest_by_default(bar, ratio: float | 
     )
 
     assert settled.column is not None
-    for stage in (settled, settled.column):
-        assert stage.start.has_history
-        assert stage.ratio <= (ratio or 1e-7)
-        assert stage.mean_residual <= 2.0 * stage.ratio * 4.0 * MASS * G * 8
+    for each in (settled, settled.column):
+        assert each.start.has_history
+        assert each.ratio <= (ratio or 1e-7)
+        assert each.mean_residual <= 2.0 * each.ratio * 4.0 * MASS * G * 8
+
+
+PATIENCE = 10_000
+
+
+def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
+    # two rows of loose disks of which the upper, held at its height, has nothing to stop it
+    loose = {"material.law": "linearpbond", "material.contact_share": 1.0, "material.fric": 0.1}
+    push = {"name": "push", "acceleration": [G, 0.0]}
+    changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
+    monkeypatch.setattr(stage, "PATIENCE", PATIENCE)
+    looks: list[float] = []
+    with pytest.raises(RunError, match=r"stalls at an unbalanced force ratio of (?s:.*)is the body held") as caught:
+        settle(scene(bar, **{**changes, **loose}), lambda _, ratio, stage: looks.append(ratio))
+
+    assert f"an unbalanced force ratio of {looks[-1]:.3g} after {len(looks) * LOOK:,} steps" in str(caught.value)
+    assert PATIENCE <= len(looks) * LOOK < 2 * PATIENCE
+    assert "; broken bonds: 0\nunbalanced force on particle " in str(caught.value)
+
+
+LOOSE = {
+    "packing.size": [2.0, 2.5],
+    "material.law": "linearpbond",
+    "material.contact_share": 1.0,
+    "material.fric": 0.5,
+    "material.elastic_start": False,
+}
+"""Four disks by five, which only touch."""
+
+LOADED = 60 * LOOK
+"""Steps after which such a body has left the elastic law and has all its loads."""
+
+PULLS = {(1.75, 0.75): 3.0, (1.75, 1.25): 2.5, (1.75, 1.75): 4.0, (1.75, 2.25): 2.0, (0.25, 1.25): -2.5}
+"""Forces (N) along x on some of them, which part from the rest; half of all is that of the largest two."""
+
+
+def test_a_stalled_stage_names_who_lacks_most_and_how_many_lack_half(bar) -> None:
+    loads = [
+        {"name": f"pull{number}", "force": [force, 0.0], "position": list(place)}
+        for number, (place, force) in enumerate(PULLS.items())
+    ]
+    static = {"ratio": 1e-8, "max_steps": LOADED, "boundary": {"bottom": FIXED}}
+    body = scene(bar, load=loads, static=static, **LOOSE)
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+    node = {place: int(np.argmin(np.hypot(*(body.positions - place).T))) for place in PULLS}
+
+    unbalanced = np.zeros((body.count, 2))
+    for place, force in PULLS.items():
+        unbalanced[node[place], 0] = force
+    assert np.array_equal(caught.value.unbalanced, unbalanced)
+    assert caught.value.run.state.step == LOADED
+    assert caught.value.run.state.displacement[0, node[1.75, 1.75]] > 0.0
+    # of two that are equally bad the first is named; they have moved by far less than a centimetre
+    first, second = sorted((node[1.75, 1.25], node[0.25, 1.25]))
+    third = f"particle {first} at ({body.positions[first, 0]:.2f}, 1.25) m: ({unbalanced[first, 0]:.3g}, 0) N"
+    reported = str(caught.value).splitlines()
+    assert reported[0].endswith("; broken bonds: 0")
+    assert reported[1:] == [
+        f"unbalanced force on particle {node[1.75, 1.75]} at (1.75, 1.75) m: (4, 0) N",
+        f"unbalanced force on particle {node[1.75, 0.75]} at (1.75, 0.75) m: (3, 0) N",
+        f"unbalanced force on {third}",
+        "2 of 20 particles have half of all unbalanced force, between (1.75, 0.75) and (1.75, 1.75) m",
+        "allow more with static.max_steps",
+    ]
+    assert f"particle {second} at" not in str(caught.value)
+
+
+def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pairs_that_act(bar) -> None:
+    ratios: list[float] = []
+    static = {"ratio": 1e-8, "max_steps": LOOK, "boundary": {"bottom": FIXED}}
+    tough = {"material.law": "linearpbond", "material.elastic_start": False, "material.fric": 0.5}
+    body = scene(bar, **{**STANDING, **tough, "static": static})
+    with pytest.raises(
+        StalledError, match=r"in 100 steps, static\.ratio requests 1e-08; (?s:.*)static\.max_steps"
+    ) as caught:
+        settle(body, lambda _, ratio, stage: ratios.append(ratio))
+    contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
+    for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.force, strict=True):
+        total[:2, i] += [fx, fy]
+        total[:2, j] -= [fx, fy]
+    total[:, body.edges["bottom"].nodes] = 0.0
+
+    # a few forces of the weight of eight
+    np.testing.assert_allclose(caught.value.unbalanced, total[:2].T, rtol=0.0, atol=1e-14 * 8.0 * MASS * G)
+    assert np.abs(total).max() > 1e-3 * MASS * G
+    # pairs of the list that do not push say nothing of how strong forces are; those that are held lack nothing
+    lacking = np.hypot(*caught.value.unbalanced.T)
+    pair = np.hypot(*contacts.force[:, :2].T)
+    assert 0 < np.count_nonzero(pair == 0.0) < len(pair)
+    assert np.count_nonzero(lacking) == body.count - len(body.edges["bottom"].nodes)
+    assert ratios[-1] == pytest.approx(lacking.mean() / pair[pair > 0.0].mean(), rel=1e-12)
+    assert f"came to an unbalanced force ratio of {ratios[-1]:.3g} in" in str(caught.value)
+
+
+def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None:
+    static = {"ratio": 1e-8, "max_steps": LOOK // 2, "stress": [-3e6, 2e6, 1e6]}
+    body = scene(bar, packing=DENSE, static=static)
+    with pytest.raises(StalledError) as caught:  # right after a look
+        settle(body)
+    state = caught.value.run.state
+    x, y = body.positions.T + state.displacement[:2]
+    vx, vy, spin = state.velocity
+    momenta = np.stack([
+        np.stack([body.mass * vx, np.zeros(body.count)]),
+        np.stack([body.mass * vy, np.zeros(body.count)]),
+        np.stack([body.mass * ((x - x.mean()) * vy - (y - y.mean()) * vx), body.inertia * spin]),
+    ])  # fmt: skip
+
+    # local damping takes from each disk alone, so that without a cure something would be left; some 150 disks' parts,
+    # each rounded by 1e-16, cancel
+    assert np.abs(momenta[2, 1].sum()) > 1e-3 * np.abs(momenta[2, 1]).sum()
+    assert (np.abs(momenta.sum(axis=(1, 2))) < 1e-13 * np.abs(momenta).sum(axis=(1, 2))).all()

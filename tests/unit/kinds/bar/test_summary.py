@@ -10,7 +10,7 @@ import pytest
 from dembound.bar.fracture import Spall, spalls
 from dembound.gauge.peaks import first_fall
 from dembound.kinds.bar import summary
-from dembound.kinds.bar.summary import LATER_SPALLS, part_of, summarise_bar
+from dembound.kinds.bar.summary import LATER_SPALLS, bar_outcome, part_of, summarise_bar
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan
 from dembound.motion.simulation import Simulation
@@ -99,3 +99,37 @@ def test_pull_back_is_that_of_a_free_end_beyond_a_spall(run, side: str, free: fl
     # ½ρc of how far the velocity falls; the loaded end and the middle tell nothing of it
     found = summarise_bar(planned.scene, simulation, path)["pull_back_strength"]
     assert found == {f"at-{free:g}": 0.5 * 2500.0 * 1000.0 * first_fall(outwards * velocity)}
+
+
+def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:
+    summary = {
+        "laws": [{"law": "finite differences", "from": 0.0}],
+        "spalls": spalls,
+        "breaks_at_ends": {},
+        "spalls_note": note,
+        "bar": {"strength": 1e7},
+        "energy": {"crack": 0.0, "supplied": 1.0, "relative_error": 0.0},
+    }
+    return bar_outcome(summary | more)
+
+
+@pytest.mark.parametrize(("count", "lines", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
+def test_of_many_spalls_the_first_are_reported(count: int, lines: int, last: str) -> None:
+    facts = outcome([{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)])
+    assert facts[:3] == [f"spall at {place} m, 1 ms" for place in ("0", "0.1", "0.2")]
+    assert len(facts) == lines
+    assert facts[-1].startswith(last)
+
+
+def test_a_bar_that_comes_off_an_end_that_holds_it_has_not_spalled() -> None:
+    off = {"right": {"start": [1.99, 2.0], "end": [1.99, 2.0], "time": 7.41e-4}}
+    ends = {"left": {"type": "free"}, "right": {"type": "fixed"}}
+    assert outcome([], breaks_at_ends=off, boundaries=ends) == ["broke at the right end (fixed), 741 µs"]
+
+
+@pytest.mark.parametrize(
+    ("supplied", "said"), [(40.0, "5 % of the supplied energy"), (0.0, "energy though none came in")]
+)
+def test_energy_added_by_breaks_is_a_share_of_what_was_supplied_if_anything_was(supplied: float, said: str) -> None:
+    (_, line) = outcome([], energy={"crack": -2.0, "supplied": supplied, "relative_error": 0.0})
+    assert line == f"bonds broke within single steps, adding {said}, take a smaller bar.spacing or run.courant"

@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 from numba import njit
+from small_cases import small
 
-from dembound.casefile.types import LAWS
+from dembound.casefile.types import LAWS, _usable
 from dembound.kernels.common import FAST, U
 from dembound.kernels.compiler.lanes import bits, byte_of, load, store
 from dembound.kernels.compiler.limits import in_columns
 from dembound.kernels.contacts import UPDATED, closing_work
 from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
-from dembound.laws import Moduli
+from dembound.laws import Elastic, Moduli, lattice_moduli
+from dembound.motion.simulation import Simulation
+from dembound.running import plan
 
 OPTIONS = {name: value for name, value in FAST.items() if name != "cache"}
 WITH_HISTORY = [name for name, law in LAWS.items() if law.has_history]
@@ -72,3 +75,62 @@ def test_lanes_are_eight_pairs(name: str) -> None:
     assert np.array_equal(np.unpackbits(bytes_[:, None], axis=1, bitorder="little").astype(bool), broken)
     assert broken.any()
     assert not broken.all()
+
+
+STEPS = 5
+BODY = {
+    "packing": {"pattern": "A", "size": [2.0, 2.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+    "boundary": {},
+    "run": {"duration": 1.0},
+    "output": {"pictures": False},
+}
+
+
+def moved(law: str, factor: float) -> np.ndarray:
+    """Displacements (3, n) of a free body, some time after its disks had random velocities times a factor."""
+    changes = {"material.law": law} | ({"material.elastic_start": False} if LAWS[law].has_history else {})
+    planned = plan(small(BODY, changes=changes))
+    run = Simulation(planned.scene, planned.time_step)
+    run.state.velocity = factor * np.random.default_rng(1).standard_normal((3, planned.scene.count))
+    run.run(STEPS)
+    return run.state.displacement
+
+
+def is_linear(law: str) -> bool:
+    """Whether motion is proportional to velocities, of either sign: to rounding of a few steps."""
+    one = moved(law, 1e-3)
+    return all(
+        np.allclose(moved(law, 1e-3 * factor), factor * one, rtol=0.0, atol=1e-12 * abs(factor) * np.abs(one).max())
+        for factor in (-1.0, 3.0)
+    )
+
+
+@pytest.mark.parametrize("law", [name for name, law in LAWS.items() if law.is_linear])
+def test_laws_are_linear_that_say_so(law: str) -> None:
+    assert is_linear(law)
+
+
+class Rubber(Elastic):
+    name = "rubber"
+    is_linear = False
+
+
+class Brittle(Elastic):
+    name = "brittle"
+    has_history = True
+    linear = "rubber"
+
+
+def test_the_linear_law_of_a_law_is_linear() -> None:
+    """A law that is not linear may name itself; another law cannot name it as linear."""
+    with pytest.warns(UserWarning, match='"brittle" names "rubber" as its linear law, which must be a linear law'):
+        found = _usable({law.name: law for law in (Elastic(), Rubber(), Brittle())})
+    assert list(found) == ["elastic", "rubber"]
+
+
+def test_shares_and_bond_radius_divide_the_stiffness_as_equation_9_says() -> None:
+    contact, bond = lattice_moduli(2500.0, 1000.0, contact_share=0.75, bond_radius_factor=0.5)
+
+    assert (contact, bond) == (1.875e9, 1.25e9)
+    assert contact + 0.5 * bond == pytest.approx(2500.0 * 1000.0**2, rel=1e-15)
