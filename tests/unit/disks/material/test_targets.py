@@ -50,11 +50,9 @@ def found(tensor: np.ndarray, along: str) -> tuple[float, ...]:
 @pytest.mark.parametrize(
     "keys",
     [
-        *({**SPEEDS, "along": along} for along in ("isotropic", "x", "y")),
-        *({**YOUNG, "along": along} for along in ("isotropic", "y")),
-        {**YOUNG, "poisson": 0.37},
-        {**YOUNG, "poisson": -0.1},
-        {**SPEEDS, "fric": 0.0, "contact_share": 0.2},
+        *({**SPEEDS, "along": along} for along in ("isotropic", "x")),
+        {**YOUNG, "along": "y", "poisson": -0.1},
+        {**YOUNG, "poisson": 0.37, "fric": 0.0, "contact_share": 0.2},
         {"bulk": 40e9, "shear": 25e9},
     ],
 )
@@ -94,21 +92,9 @@ def test_on_a_lattice_the_ratio_is_the_closed_form(fric: float, share: float) ->
 @pytest.mark.parametrize(
     ("keys", "held", "said"),
     [
-        (
-            {**YOUNG, "poisson": 0.45},
-            (),
-            r"^ground.poisson: asks for Poisson.s ratio .* = 0.45, but",
-        ),
-        (
-            {**SPEEDS, "s_wave_speed": 4900.0},
-            (),
-            "^ground.s_wave_speed: asks for c_p/c_s = 1.02, but this",
-        ),
-        (
-            SPEEDS,
-            ("y",),
-            "^ground.s_wave_speed: with p_wave_speed is asked of",
-        ),
+        ({**YOUNG, "poisson": 0.45}, (), r"^ground.poisson: asks for Poisson.s ratio .* = 0.45, but"),
+        ({**SPEEDS, "s_wave_speed": 4900.0}, (), "^ground.s_wave_speed: asks for c_p/c_s = 1.02, but this"),
+        (SPEEDS, ("y",), "^ground.s_wave_speed: with p_wave_speed is asked of"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_way_out(

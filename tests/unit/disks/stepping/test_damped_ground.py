@@ -70,9 +70,9 @@ def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list
     assert simulation.state.work[0, 1] == pytest.approx(taken, rel=1e-10)
 
 
-@pytest.mark.parametrize("boundary", ["viscous", "outside", "free_field"])
-@pytest.mark.parametrize("layer", [[], [{"thickness": 4.2, "quality_factor": 50.0}, {}]], ids=["uniform", "layers"])
-def test_the_ledger_closes(bar, boundary: str, layer: list) -> None:
+@pytest.mark.parametrize("boundary", ["outside", "free_field"])
+def test_the_ledger_closes(bar, boundary: str) -> None:
+    layer = [{"thickness": 4.2, "quality_factor": 50.0}, {}]
     sides = {side: {"type": boundary} for side in ("left", "right")}
     sides |= {"bottom": {"type": "viscous" if boundary == "free_field" else boundary}}
     more = {"outside.element": 2.0} if boundary == "outside" else {}

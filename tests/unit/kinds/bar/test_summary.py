@@ -51,10 +51,6 @@ def test_the_summary_of_a_bar_is_plain_json_with_the_spalls_of_its_bonds(run, mo
     assert found["method"] == {"type": "peridynamics", "horizon": 3, "corrected_ends": False}
     assert found["courant"] == pytest.approx(1.0, rel=1e-12)
     assert found["laws"] == [{"law": "peridynamics, m = 3", "from": 0.0}]
-    assert found["bar"]["wave_speed"] == 1000.0
-    assert found["boundaries"] == {"left": {"type": "free"}, "right": {"type": "free"}}
-    assert found["bond_updates"] == part_of(simulation).bond_updates > 0
-    assert not {"particles", "contacts", "packing", "static"} & set(found)
     # the books close to rounding: 60 steps of sums over 41 nodes
     assert found["energy"]["relative_error"] < 60 * 41 * np.finfo(float).eps
 

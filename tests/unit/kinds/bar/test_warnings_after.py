@@ -62,8 +62,6 @@ def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:
     tables = {"bar": bar, "method": SPALLING["method"], "run": {"duration": 1e-4}, "output": {"pictures": False}}
     folder = run_case(small(tables), tmp_path)
     assert _summary(folder)["open_contacts"] == ["rod", "far"]
-    folder = resume_case(folder, until=3e-4)
-    assert _summary(folder)["open_contacts"] == ["far"]
     folder = resume_case(folder, until=2e-3)  # the striker is back, and its contact open again
     assert _summary(folder)["open_contacts"] == ["far"]
     (line,) = (line for line in _summary(folder)["warnings"] if "contact" in line)
@@ -89,13 +87,10 @@ OTHER_SIGN = "change the sign of load.blow.pressure if it is to push"
     ("side", "load", "speed", "changes", "key", "what", "cure"),
     [
         ("left", 9e7, None, {}, "load.blow", "load itself", "give load.blow.nodes = 3"),
-        ("right", 9e7, None, {}, "load.blow", "load itself", "give load.blow.nodes = 3"),
         # peridynamics swings behind a front shorter than its horizon
         ("left", None, 10.0, LONG_BONDS, "boundary", "incoming wave itself", FINER),
-        ("left", -3e7, None, {"wave.hit.amplitude": 1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
         ("right", 3e7, None, {"wave.hit.amplitude": -1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
         ("left", None, -10.0, {}, "boundary", "incoming wave pulls, with ", PUSHES),
-        ("right", None, -10.0, {}, "boundary", "incoming wave pulls, with ", PUSHES),
     ],
 )
 def test_what_tears_the_end_where_it_enters_is_warned_of(run, side, load, speed, changes, key, what, cure) -> None:
@@ -116,10 +111,8 @@ def spall(time: float, start: list[float]) -> dict:
     ("side", "place", "time", "warned"),
     [
         ("left", 0.07, 1e-4, True),
-        ("left", 0.08, 1e-4, False),  # beyond the horizon, which is 0.075 m
         ("left", 0.0, 1.99e-3, True),
         ("left", 0.0, 2.01e-3, False),  # the wave is back from the free end
-        ("right", 0.07, 1e-4, True),
         ("right", 0.08, 1e-4, False),
     ],
 )

