@@ -5,10 +5,7 @@ import pytest
 
 from dembound.boundaries import Fixed
 from dembound.boundaries.support import Edge
-from dembound.disks.scene import build
-from dembound.disks.supports import forces_of
 from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
-from dembound.kinds import loads
 from dembound.places import is_within, nearest, nearest_number
 
 COUNT = 14
@@ -118,50 +115,6 @@ def test_ranges_and_regions_of_the_same_ends_have_the_same_disks(radius: float) 
         np.testing.assert_array_equal(
             held, np.flatnonzero(is_within((ends[0], 0.0, ends[1], 100.0), along, 60.0 * radius))
         )
-
-
-CASE = """
-[packing]
-pattern = "A"
-size = [8.0, 8.0]
-radius = 0.2
-[material]
-density = 2000.0
-p_wave_speed = 300.0
-fric = 0.5
-[[hole]]
-name = "h"
-type = "polygon"
-points = {points}
-[[load]]
-name = "p"
-hole = "h"
-pressure = 1e5
-wave = "w"
-[wave.w]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-"""
-
-
-@pytest.mark.parametrize(
-    "points", [POLYGONS[name] for name in ("square", "notched between disks", "diamond", "horseshoe")]
-)
-def test_the_pressure_in_a_mirrored_hole_is_mirrored(points) -> None:
-    def forces(numbers) -> dict[tuple[int, int], np.ndarray]:
-        case = loads(CASE.format(points=typed(numbers, 0.2, (0.0, 0.0))))
-        scene = build(case)
-        nodes, found = forces_of(case.load[0], scene)
-        places = np.rint(scene.positions[nodes] / 0.2).astype(int).tolist()
-        return dict(zip(map(tuple, places), found, strict=True))
-
-    own, image = forces(np.array(points)), forces([(40 - x, y) for x, y in points])
-    assert {(40 - x, y) for x, y in own} == image.keys()
-    for (x, y), (fx, fy, moment) in own.items():
-        np.testing.assert_allclose(image[40 - x, y], [-fx, fy, -moment], atol=1e-6)
 
 
 LATTICE = np.stack(np.meshgrid(np.arange(12.0), np.arange(9.0)), axis=-1).reshape(-1, 2)

@@ -108,12 +108,3 @@ def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
     assert spalls(tough, PLACES, STEP)[0].describe()["began"] == 5e-3
     tough.bond[2, 18], tough.bond_broken[2, 18] = 1.0, OPENING  # one that still crosses it
     assert spalls(tough, PLACES, STEP) == []
-
-
-def test_open_planes_within_a_horizon_are_one_spall(tough) -> None:
-    for plane, step in ((20, 5), (23, 2), (30, 1)):
-        opened(tough, plane, step)
-    assert [(spall.start, spall.end) for spall in spalls(tough, PLACES, STEP)] == [
-        ((PLACES[30], PLACES[31]), (PLACES[30], PLACES[31])),
-        ((PLACES[23], PLACES[24]), (PLACES[20], PLACES[24])),
-    ]

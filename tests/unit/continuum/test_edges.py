@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried, stepped
+from meshes import ORDER, below, buried
 
 from dembound.continuum.edges import edge_lengths, free_edges, traction_in
 from dembound.continuum.mesh import Around, Mesh
@@ -83,22 +83,3 @@ def test_layers_are_not_loaded() -> None:
     assert traction.absorbs
     assert mesh.positions[traction.node, 0].max() == 15.0
     assert traction_in(mesh, (-9.0, -6.0, 18.0, -1.5)).absorbs is False  # outer edges of layers are held
-
-
-def test_a_surface_of_two_heights_has_tractions_at_both() -> None:
-    """3 m at the left and 5 m at the right, where the ground ends 0.3 m and 0.1 m above."""
-    mesh = stepped()
-    depth = {"top": np.where(mesh.positions[:, 0] < 3.0, 0.3, 0.1)}
-
-    for region, length in (
-        ((-4.0, 2.9, 20.0, 3.4), 4.0),
-        ((-4.0, 3.2, 20.0, 3.4), 4.0),
-        ((-4.0, 3.4, 20.0, 5.05), 3.0),
-        ((-4.0, 5.2, 20.0, 9.0), 0.0),
-        ((-4.0, 2.0, 20.0, 9.0), 7.0),
-    ):
-        traction = traction_in(mesh, region, depth)
-        assert traction.length == pytest.approx(length, abs=1e-12)
-        assert set(mesh.positions[traction.node, 1]) <= {3.0, 5.0}
-    assert traction.share.sum() == pytest.approx(1.0, rel=1e-12)
-    assert traction.absorbs  # beyond x = 9 m

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from meshes import buried, stepped, uneven
+from meshes import buried, uneven
 
 from dembound.continuum.interpolation import (
     FORCES,
@@ -59,17 +59,6 @@ def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -
     np.testing.assert_array_equal(located(mesh, points)[0], nearest)
     on_edges = located(mesh, np.array([[1.5, 1.0], [3.0, 5.0], [7.0, 6.0], [5.0, 7.0]]))[0]
     np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
-
-
-def test_points_above_a_lower_surface_belong_to_the_highest_element_below() -> None:
-    """Beside the box by their columns; those in the box that are beside nothing to the nearest element."""
-    mesh = stepped()
-    points = np.array([[-4.0, 3.5], [-8.9, 8.0], [7.0, 5.1], [6.1, 9.5], [5.9, 8.5], [0.2, 4.0]])
-    element, local = located(mesh, points)
-
-    assert [tuple(mesh.elements[each]) for each in element] == [(1, 2), (0, 2), (5, 3), (5, 3), (5, 3), (2, 2)]
-    assert local[0, 1] == pytest.approx(1.0 + 2.0 * 0.5 / 3.0)
-    assert (local[:, 1] > 1.0).all()
 
 
 HOLE = (-2.0, -1.0, 4.0, 1.0)

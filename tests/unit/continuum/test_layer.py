@@ -105,13 +105,6 @@ def largest_growth(medium: Medium, part: float) -> float:
     return worst
 
 
-@pytest.mark.parametrize("speeds", [(400.0, 100.0), (400.0, 282.8), (400.0, 340.0)])
-def test_isotropic_ground_needs_nothing_along_layers(speeds: tuple[float, float]) -> None:
-    medium = Medium.isotropic(2000.0, *speeds)
-    assert along_needed(medium) < 1e-12
-    assert along_in(medium) == 0.0
-
-
 def test_lattices_need_it_from_a_ratio_on() -> None:
     """cos²φ = (1 − ratio)/2, which is ½ at most; nothing with stiffer normal springs."""
     for ratio in (0.05, 0.5):

@@ -102,13 +102,9 @@ NO_PLACE = "leaves no place for a margin or a layer at the top"
         (Mesh.around, BOX | {"box": (0.0, 0.0, 6.0, 0.0)}, "the box is empty"),
         (Mesh.around, BOX | {"surface": 1.0}, "the free surface, y = 1 m, is below the top of the box, 2 m"),
         (Mesh.around, BOX | {"surface": 3.0, "margin": Around(top=1)}, NO_PLACE),
-        (Mesh.around, BOX | {"surface": 3.0, "layer": Around(top=1)}, NO_PLACE),
         (Mesh.around, BOX | {"size": (6.0, 2.0), "layer": Around(left=1), "periodic": (True, False)}, "periodic along"),
         (Mesh.around, BOX | {"layer": Around(left=1), "mirror": Around(left=1)}, "plane of symmetry across axis 0 has"),
-        (Mesh.uniform, SMALL | {"levels": (2, 3)}, ONLY_BESIDE),
-        (Mesh.uniform, SMALL | {"box": (1, 0, 2, 2), "levels": (2, 3)}, ONLY_BESIDE),
         (Mesh.uniform, SMALL | {"box": (1, 1, 2, 3), "periodic": (True, False), "levels": (2, 3)}, ONLY_BESIDE),
-        (Mesh.uniform, SMALL | {"periodic": (True, False), "layer": Around(left=1)}, "along axis 0 has no absorbing"),
         (Mesh.uniform, SMALL | {"layer": Around(bottom=2, top=2)}, "more elements along axis 1 than the mesh, 3"),
     ],
 )

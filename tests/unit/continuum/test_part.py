@@ -82,19 +82,6 @@ def test_a_joint_inside_elements_is_refused() -> None:
         GridBody(mesh=mesh, medium=Layered((ROCK, SOIL), (3.0,)))
 
 
-def test_layers_of_one_medium_have_the_forces_of_that_medium(grid) -> None:
-    """To the last bit of each element; at shared nodes elements are added in another order."""
-    one, three = grid(), grid(medium=Layered((ROCK, ROCK, ROCK), (-2.0, 0.0)))
-    u = np.random.default_rng(0).standard_normal((3, one.count))
-    forces = []
-    for body in (one, three):
-        moved, force = np.zeros((2, 3, body.blocks.end))
-        moved[:, body.blocks.slot] = u
-        body.fill_forces(moved, force)
-        forces.append(force[:, body.blocks.slot])
-    np.testing.assert_allclose(forces[1], forces[0], atol=1e-12 * np.abs(forces[0]).max())
-
-
 def dense_limit(body: GridBody, delay: float) -> float:
     """Largest stable step by a dense eigenvalue: ω² times 1 + 2kq² on the nodes of layers."""
     n = body.count

@@ -2,7 +2,6 @@
 
 import pytest
 from disk_systems import LAMB
-from small_cases import SURROUNDED, small
 
 from dembound.disks.memory import SceneSizes, expected_bytes
 from dembound.disks.scene import build
@@ -56,12 +55,3 @@ def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
     assert sizes.moving == pytest.approx(scene.layout.count, rel=0.01)
     assert sizes.ties == 80
     assert expected_bytes(case) == pytest.approx(scene.largest_memory, rel=0.02)
-
-
-def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:
-    """An element of order 4 has 25 nodes; beside a column there is also its disk, and each monitor has a twin."""
-    places = [{"name": "in", "position": [6.5, 3.5]}, {"name": "beyond", "position": [-1.0, 3.5]}]
-    waves = {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}
-    for changes, probes in (({}, 26), (waves, 29)):
-        case = small(SURROUNDED, changes={"monitor": places, **changes})
-        assert SceneSizes.expected(case).probes == build(case).sizes.probes == probes

@@ -52,19 +52,6 @@ def test_shortest_wave_is_the_first_to_grow(horizon: int) -> None:
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
-def test_waves_that_grow_have_no_frequency(horizon: int) -> None:
-    limit = courant_limit(horizon)
-    at, above = lattice(horizon, limit), lattice(horizon, limit * (1.0 + 1e-9))
-    assert at.stable
-    # sin(ωΔt/2) is 1 within a few roundings, its angle within their square root
-    assert at.frequency(np.pi) * limit == pytest.approx(np.pi, rel=1e-7)
-    assert not above.stable
-    for speeds in (above.frequency, above.phase_velocity, above.group_velocity):
-        assert np.isnan(speeds(np.pi))
-        assert np.isfinite(speeds(0.1))
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
 @pytest.mark.parametrize(("of", "share"), [("phase", 0.0), ("phase", 0.9), ("group", 0.5)])
 def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(horizon: int, share: float, of) -> None:
     courant = share * courant_limit(horizon)

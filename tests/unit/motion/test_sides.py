@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.support import Edge, SupportBuilder
+from dembound.boundaries.support import Edge
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.sides import _bearers
@@ -45,18 +45,6 @@ def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together(recorde
     # where two forces cancel, here along y, what there is belongs to the side along whose normal it is
     expected = [[5.0, 0.0], [6.5 + recorded, 7.25]]
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force, known), expected, rtol=1e-14)
-
-
-def test_a_component_held_by_two_sides_is_of_that_along_whose_normal_it_is() -> None:
-    for order in (("left", "bottom"), ("bottom", "left")):
-        builder = SupportBuilder()
-        for builder.side in order:
-            for component in range(2):
-                builder.add(np.array([7]), component, prescribed=True)
-        shares = builder.table().shares
-        assert shares is not None
-        found = {int(c): shares.sides[s] for s, c in zip(shares.side, shares.component, strict=True)}
-        assert found == {0: "left", 1: "bottom"}
 
 
 @pytest.mark.parametrize("cuts", [(40,), (1, 2, 8, 9, 23, 24, 40)])

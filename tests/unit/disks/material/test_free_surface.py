@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.continuum.mesh import Around, Mesh
 from dembound.disks.material import free_surface
-from dembound.disks.material.free_surface import cut_at, inset, mass_of, skin_depths
+from dembound.disks.material.free_surface import cut_at, skin_depths
 from dembound.disks.material.homogenise import homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.packings.brick import Brick
@@ -57,19 +56,6 @@ def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
     assert skin_depths(brick, stiffness, tensor) == pytest.approx((higher, -higher), abs=1e-9)
     # rows end at the left and right: all columns have the same stiffness
     assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
-
-
-def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
-    skins = {"top": 0.3, "left": 0.2}
-    box = inset((0.0, 0.0, 6.0, 4.0), skins)
-    assert box == (0.2, 0.0, 6.0, 3.7)
-    mesh = Mesh.around(box, (2.9, 3.7), 4, margin=Around(right=2, bottom=1), layer=Around(right=1, bottom=2))
-    total = 1000.0 * mesh.areas + mass_of(skins, mesh, 1000.0)
-
-    # 5 × 4 elements less the box's two; three of them end at the top, and three on the left
-    assert total.sum() == pytest.approx(1000.0 * (18 * 2.9 * 3.7 + 0.3 * 8.7 + 0.2 * 11.1), rel=1e-12)
-    x, y = mesh.positions.T
-    assert set(np.flatnonzero(mass_of(skins, mesh, 1000.0))) == set(np.flatnonzero((y == y.max()) | (x == x.min())))
 
 
 def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -> None:

@@ -100,10 +100,3 @@ def test_no_more_is_locked_in_than_a_tenth_of_the_contact_modulus(random_brick: 
     allowed = r"is 126 MPa, must be at most 125 MPa, 0\.1 of the contact modulus"
     with pytest.raises(CaseError, match=rf"material\.locked_in: {allowed}"):
         ground(random_brick, law="linearpbond", locked_in=1.008 * most)
-    # of the modulus after scaling
-    matched = ground(random_brick, match="assembly").moduli.emod
-    assert abs(matched / (0.5 * K) - 1.0) > 0.01
-    limit = 0.1 * matched
-    ground(random_brick, law="linearpbond", match="assembly", locked_in=limit * (1.0 - 1e-9))
-    with pytest.raises(CaseError, match="must be at most"):
-        ground(random_brick, law="linearpbond", match="assembly", locked_in=limit * (1.0 + 1e-9))

@@ -37,14 +37,6 @@ def out_of_balance(found: SimpleNamespace) -> np.ndarray:
     return found.system.forces.last(found.system.contacts) + found.system.load
 
 
-def test_within_all_limits_the_elastic_state_is_the_answer(bar) -> None:
-    found = sheared(bar)
-    found.state.displacement = found.rest
-    assert found.loading.is_the_answer(found.state)
-    assert not found.system.uses_history
-    np.testing.assert_array_equal(found.state.displacement, found.rest)
-
-
 @pytest.mark.parametrize("share", [0.25, 0.6])
 def test_the_elastic_way_ends_where_the_first_bond_is_at_its_strength(bar, share: float) -> None:
     """Bonds have half of the shear stress, as contacts are as stiff; nothing is out of balance where it ends."""

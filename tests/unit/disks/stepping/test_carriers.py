@@ -25,10 +25,6 @@ def scene(bar):
     return make
 
 
-def none_of(body: DiskScene) -> np.ndarray:
-    return np.zeros(body.count, dtype=np.bool_)
-
-
 def isolate(system: DiskSystem, particles: np.ndarray) -> None:
     """Break all bonds of some particles in all parts."""
     for part in system.parts:
@@ -65,19 +61,3 @@ def test_breaks_at_random_leave_the_sum_of_forces_of_every_side(scene, sides) ->
     assert ended[-1] > 10
     np.testing.assert_allclose(sums(), before, rtol=0.0, atol=1e-12)  # some thirty terms of size 1
     assert standing(carriers, ~balance.force[:2].any(axis=0), balance.force).all()
-
-
-def test_a_side_that_has_lost_half_of_its_forces_carries_no_more_nor_does_the_opposite_one(scene) -> None:
-    body = scene()
-    carriers, force = carriers_of(body), np.zeros((3, body.count))
-    by_side = {each.side: each.nodes for each in carriers}
-    force[0, by_side["left"]], force[0, by_side["right"]] = 1.0, -1.0
-    force[1, by_side["bottom"]] = 2.0
-    ended = none_of(body)
-    assert standing(carriers, ended, force).all()
-    ended[by_side["top"]] = True  # bears nothing
-    ended[by_side["left"][1:5]] = True
-    assert standing(carriers, ended, force).all()
-    ended[by_side["left"][1:7]] = True
-    stands = dict(zip((each.side for each in carriers), standing(carriers, ended, force), strict=True))
-    assert stands == {side: side not in ("left", "right") for side in stands}

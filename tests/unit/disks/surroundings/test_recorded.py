@@ -29,10 +29,9 @@ def waved(tmp_path_factory):
     return scene, simulation.state, folder
 
 
-@pytest.mark.parametrize("name", ["displacement", "velocity"])
-def test_beside_a_column_the_total_motion_is_recorded_too(waved, name) -> None:
-    scene, state, folder = waved
-    values = getattr(state, name)
+def test_beside_a_column_the_total_motion_is_recorded_too(waved) -> None:
+    (scene, state, folder), name = waved, "velocity"
+    values = state.velocity
     own = values[:, scene.beside.nodes].T
     row = scene.positions[: scene.seam.count, 1]
     heights = np.unique(row)

@@ -121,13 +121,3 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
     assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
     assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
-
-    mild = {"material.kratio": 0.5, "material.pb_kratio": 0.5}
-    assert "they return at most" in facts_of(case, **mild)["absorbing layers"]
-    below = {"layer": [{"thickness": 6.0}, shear_of_layer(0.1)]}
-    assert "they stretch both axes" in facts_of(case, **below)["absorbing layers"]
-
-
-def shear_of_layer(ratio: float) -> dict[str, float]:
-    """A layer with this ratio of stiffness."""
-    return {"kratio": ratio, "pb_kratio": ratio}

@@ -6,14 +6,14 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
-from small_cases import GRAINS, small
+from small_cases import small
 from warned_cases import warned
 
 from dembound import api
 from dembound.disks.scene import build
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
-from dembound.kinds.disks.summary import describe_layers, describe_side
+from dembound.kinds.disks.summary import describe_layers
 from dembound.plot.scene import plot_scene
 from dembound.results.vtk import write_paraview
 
@@ -71,20 +71,6 @@ def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
     moduli = {"density": 2000.0, "emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 300.0}
     inherited = warned(soil(material=moduli, layer=[{"thickness": 5.0, "density": 5500.0}, {"name": "b"}]))
     assert len([line for line in inherited if line.startswith("material.s_wave_speed: is 300 m/s")]) == 1
-
-
-def test_a_side_has_factors_by_layer() -> None:
-    """Those of random disks differ, as the sums of their diameters do."""
-    packing = GRAINS["packing"] | {"size": [8.0, 20.0], "origin": [0.0, -20.0]}
-    scene = build(soil(packing=packing))
-    layers = describe_side(scene, "left")["layers"]
-    assert [layer["layer"] for layer in layers] == ["rock", "sand", "clay"]
-    positions, diameters = scene.edges["left"].positions, scene.edges["left"].diameters
-    own = positions[:, 1] > -5.0
-    nominal = LAYERS[0]["p_wave_speed"]
-    speed = scene.ground.at(-1.0).wave_speeds(0)[0]
-    assert layers[2]["beta_p"] == pytest.approx(speed / nominal * 5.0 / diameters[own].sum(), rel=1e-9)
-    assert f"β_P = {layers[2]['beta_p']:g} (matched), " in dict(disk_facts(scene))["left side"].split(" beside clay")[0]
 
 
 @pytest.fixture(scope="module")
