@@ -144,3 +144,6 @@ def test_a_body_that_spins_under_the_elastic_law_grows_as_said() -> None:
         'material.law: is "elastic", so bonds keep their directions of the start, but by t = 0.001 s'
     )
     assert "has turned by 0.4 rad: a body that turns so grows by 7.7 %" in said
+    again = Turns()
+    again.restore(tracker.saved_arrays())
+    np.testing.assert_array_equal(again.found, tracker.found)

@@ -1,10 +1,11 @@
 """The step of pairs with a history against the same law and the same leapfrog written down plainly."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from plain_kernels import PlainPairs, random_pairs, stepped
+from plain_kernels import PlainPairs, behind, random_pairs, stepped
 
 from dembound.kernels import bonded, follower  # noqa: F401  (they make the law and the forces that turn known)
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
@@ -124,5 +125,36 @@ def test_no_step_begins_with_a_list_that_is_too_old() -> None:
     assert why == LIST_ENDS
     assert 1 < done < 60
     assert done == np.argmax(2.0 * far > 0.3)
+    close(u, states[done][0])
+    close(v, states[done][1])
+
+
+def of_both(pushes: list) -> Callable:
+    """Forces on two parts of as many particles."""
+    parts = slice(0, PARTICLES), slice(PARTICLES, None)
+    return lambda u, v: np.hstack([push(u[:, part], v[:, part]) for push, part in zip(pushes, parts, strict=True)])
+
+
+def test_a_supported_node_that_outruns_all_others_ages_the_list() -> None:
+    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(2 * PARTICLES, 10, STEP, loaded=False)
+    later = behind(pairs, PARTICLES)
+    driven = model.nodes[-1]
+    assert driven >= PARTICLES
+    model.push[:] = 0.0
+    model.push[:, -1, 0] = 3.0  # m/s along x, prescribed
+    parts = [law_of(pairs, WEAK)[1] for _ in range(2)]
+    u, v = np.zeros((2, 3, 2 * PARTICLES))
+    states = model.leapfrog(of_both(parts), u, v)
+    body, supports, log = model.bundles()
+    laws = bonded_law(pairs, WEAK), bonded_law(later, WEAK, skin=2.0)
+    done, why = advance(u, np.empty_like(u), v, 0, laws, (), None, body, supports, log)
+
+    origin = np.zeros((2, PARTICLES))
+    far = np.array([moved(then, PARTICLES, origin) for then, _, _ in states])
+    others = np.delete(np.array([before for _, before, _ in states]), driven, axis=2)
+    # the rest of its part is so slow that by its speed the list would stay good for all steps
+    assert 2.0 * 10 * STEP * np.hypot(*others[:, :2].transpose(1, 0, 2)).max() < 2.0
+    assert why == LIST_ENDS
+    assert done == np.argmax(2.0 * far > 2.0) == 4
     close(u, states[done][0])
     close(v, states[done][1])

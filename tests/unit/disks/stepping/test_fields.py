@@ -62,8 +62,9 @@ def test_a_turn_along_the_tangent_becomes_one_that_keeps_all_distances(body: Dis
     drift = np.array([[3.0], [-2.0], [0.0]])
     moved = datum + tangent(body, datum, angle) + drift
     spun = moved[2].copy()
-    moved, _ = turned_as_a_whole(body, moved, np.zeros((3, body.count)), datum)
-    arm = arms(body, datum)
+    v = np.random.default_rng(2).uniform(-1.0, 1.0, (3, body.count)) + np.array([[5.0], [3.0], [1.0]])
+    moved, turned = turned_as_a_whole(body, moved, v.copy(), datum)
+    arm, mean = arms(body, datum), np.average(v[:2], axis=1, weights=body.mass)[:, None]
 
     # the centre of mass goes on as before; sums of 60 numbers of size 10
     np.testing.assert_allclose(moved[:2], datum[:2] + drift[:2] + (turn(angle) - np.eye(2)) @ arm, rtol=0.0, atol=1e-13)
@@ -71,6 +72,9 @@ def test_a_turn_along_the_tangent_becomes_one_that_keeps_all_distances(body: Dis
     before, after = (np.hypot(*(p[:, None] - p[:, :, None])) for p in places)
     np.testing.assert_allclose(after, before, rtol=0.0, atol=2e-13)
     assert np.array_equal(moved[2], spun)
+    # velocities turn about that of the centre
+    np.testing.assert_allclose(turned[:2], mean + turn(angle) @ (v[:2] - mean), rtol=0.0, atol=1e-13)
+    assert np.array_equal(turned[2], v[2])
 
 
 K = 2500.0 * 1000.0**2

@@ -10,7 +10,7 @@ from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.tables import Limits
 from dembound.laws.linearpbond import LIMITS, limit_lines
-from dembound.running import plan, run_case
+from dembound.running import plan, resume_case, run_case
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)
 
@@ -90,3 +90,34 @@ SETTLE = r"output.load_factor: needs a \[static\] stage, .* under load\[1, weigh
 def test_where_there_is_no_factor_it_is_refused(tables, changes, problem):
     with pytest.raises(CaseError, match=problem):
         small(tables, "refused", changes)
+
+
+def test_bonds_that_do_not_break_have_no_limit(tmp_path):
+    """Of bonds alone; in all 20 columns of disks none breaks, and in 2 the first one is farther inside."""
+    bonds = QUIET | {"material.contact_share": 0.0}
+    found = {}
+    for depth in (0, 2, 20):
+        case = small(STATIC, f"kept{depth}", bonds | {f"boundary.{side}.intact": depth for side in ("left", "right")})
+        summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
+        found[depth] = summary["load_factor"]
+    assert found[20] == {"factor": None}
+    assert found[2]["factor"] >= found[0]["factor"]
+    assert 1.0 < found[2]["position"][0] < 9.0
+
+
+QUIET = {"output.contacts": False, "output.snapshots": 0}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> dict:
+    """The summary of a run."""
+    return json.loads(
+        (run_case(small(STATIC, "whole", QUIET), tmp_path_factory.mktemp("whole")) / "summary.json").read_text()
+    )
+
+
+def test_a_resumed_run_has_the_same_factor(whole, tmp_path):
+    resumed = resume_case(run_case(small(STATIC, "part", QUIET | {"run.duration": 0.006}), tmp_path), until=0.01)
+    assert json.loads((resumed / "summary.json").read_text())["load_factor"] == whole["load_factor"]
+    first, second = whole["load_factor"]["particles"]
+    assert first != second

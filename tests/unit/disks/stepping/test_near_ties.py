@@ -75,3 +75,16 @@ def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None
     assert set(found) == ({"right", "bottom"} if opens else set())  # and below, where the nearest ties are those
     if opens:
         assert {event["position"][0] for event in found.values()} == {10.0}
+
+
+def test_a_continued_run_remembers_it(scene) -> None:
+    run, later = Watched(scene), Watched(scene)
+    near = run.between((2.5, 4.5), (3.5, 4.5))
+    run.pairs.arrays.slip[near] = 0.3
+    run.watch.begin(run.pairs)
+    run.pairs.arrays.slip[run.between((5.5, 0.5), (5.5, 1.5))] = 0.1
+    found = run.look(50)
+    later.run.state.take(run.run.state.arrays() | {"step": np.array(0)})  # to which no tracker has gone on
+    later.pairs = later.system.contacts["body"]
+    later.pairs.arrays.force[0, later.pairs.live[0]] = 1e6
+    assert later.look(60) == found == {"bottom": {"time": 50 * STEP, "position": [5.5, 1.0]}}

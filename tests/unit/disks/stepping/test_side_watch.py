@@ -54,3 +54,13 @@ def test_all_forces_together_count_where_the_side_moves_as_a_whole(bar) -> None:
     assert watched.look(3, moved=60.0, borne=-20.0)["work"]["size"] == pytest.approx(0.4)
     with pytest.raises(RunError, match="51 %"):
         watched.look(4, moved=60.0, borne=-9.0)
+
+
+def test_findings_are_kept_over_a_restart(bar) -> None:
+    watched = Watched(bar)
+    watched.balance.force[1, watched.bottom[4]] = 2.0
+    watched.look(4, moved=12.0, turned=0.2)
+    again = SideWatch(watched.scene, STEP)
+    again.restore({name: values.copy() for name, values in watched.watch.saved_arrays().items()})
+    again.look(watched.balance, watched.system.contacts, np.zeros((3, watched.scene.count)), 5, 0.0, 100.0)
+    assert again.describe() == watched.watch.describe()

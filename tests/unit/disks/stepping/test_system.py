@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 from disk_systems import (
+    BONDED,
+    ELASTIC,
+    SIDES,
     STEP,
+    TOUGH,
     WEIGHT,
     WITH_HISTORY,
     begun,
@@ -11,8 +15,9 @@ from disk_systems import (
     shaken,
 )
 
+from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.common import LAW_ENDS
+from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
 
 
 @pytest.mark.parametrize("balanced", [False, True])
@@ -41,3 +46,33 @@ def test_energy_that_comes_with_another_law_is_written_down(loose, balanced: boo
     np.testing.assert_allclose(state.work[:, 4], change, rtol=0.0, atol=1e-13 * abs(before))
     assert abs(change) > 1e-9 * abs(before)
     assert not np.delete(state.work, 4, axis=1).any()
+
+
+@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
+def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(loose, boundary: dict) -> None:
+    body = loose(**TOUGH, boundary=boundary)
+    system = DiskSystem(body, STEP)
+    state = begun(system)
+    state.displacement, state.velocity, state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
+    expected = contact_lists(body)
+    for contacts in expected.values():
+        contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
+    moved, speed = state.displacement.copy(), state.velocity.copy()
+    system.react(DONE, 3, state)
+    system.react(LIST_ENDS, 3, state)
+    assert state.laws == [(ELASTIC, 0)]
+    assert state.switch_velocity.shape == (3, 0)
+    free = not boundary
+    system.react(LAW_ENDS, 3, state)
+
+    assert state.laws == [(ELASTIC, 0), (BONDED, 7)]
+    assert {part.law_name for part in system.parts} == {system.law_name} == {BONDED}
+    assert np.array_equal(state.switch_velocity, state.velocity)
+    assert not system.steady.any()
+    # one that nothing holds has really turned by what the law of small displacements took for a turn
+    assert np.array_equal(state.displacement, moved) != free
+    assert np.array_equal(state.velocity, speed) != free
+    if not free:
+        for name, contacts in system.contacts.items():
+            assert contacts.arrays.shear.any()
+            assert np.array_equal(contacts.arrays.shear, expected[name].arrays.shear)
