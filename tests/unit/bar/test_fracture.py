@@ -69,16 +69,6 @@ def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
     assert spalls(bonds, PLACES, STEP) == [Spall(7 * STEP, place, place)]
 
 
-@pytest.mark.parametrize("section", [1.0, 0.1, 0.7])
-def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
-    bonds = all_over(Rod.uniform(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3))
-    cut(bonds, 20, step=7)
-
-    # 1.5 of 5 volumes; with these sections the sums come to 0.3, and to the floats above and below it
-    assert bonds.damage()[19] == pytest.approx(0.3, abs=1e-15)
-    assert cracked_since(bonds)[19] == 7
-
-
 def test_a_spall_begins_when_the_first_node_has_lost_enough_with_those_of_that_step_alone(bonds) -> None:
     cut(bonds, 20, step=5, lengths=(1,))  # a fifth of the families of 20 and 21
     cut(bonds, 20, step=8, lengths=(2,))  # another fifth of theirs, and one of 19 and 22
@@ -97,16 +87,6 @@ def test_a_spall_begins_when_the_first_node_has_lost_enough_with_those_of_that_s
     assert (spall.start, spall.end) == ((PLACES[20], PLACES[21]), (PLACES[19], PLACES[23]))
 
 
-def test_spalls_stand_in_the_order_they_happened(bonds) -> None:
-    cut(bonds, 8, step=9)
-    cut(bonds, 30, step=4)
-    cut(bonds, 20, step=6)
-
-    found = spalls(bonds, PLACES, STEP)
-    assert [round(spall.time / STEP) for spall in found] == [4, 6, 9]
-    assert [spall.start[0] for spall in found] == [PLACES[29], PLACES[19], PLACES[7]]
-
-
 @pytest.mark.parametrize(
     ("plane", "off", "nodes"), [(0, "left", (0, 0)), (20, None, (19, 22)), (39, "right", (40, 40))]
 )
@@ -120,30 +100,6 @@ def test_a_bar_comes_off_an_end_where_its_node_is_the_first_to_crack(bonds, plan
     assert breaks_at_ends([spall], {}) == {}
 
 
-def test_a_spall_that_grows_to_an_end_later_is_one_all_the_same(bonds) -> None:
-    cut(bonds, 36, step=3)
-    cut(bonds, 39, step=5)
-    (spall,) = spalls(bonds, PLACES, STEP)
-
-    assert spall.end[1] == PLACES[-1]
-    assert breaks_at_ends([spall], ENDS) == {}
-
-
-def test_springs_count_as_well() -> None:
-    bonds = Bonds(ROD, 0)
-    bonds.spring[12], bonds.spring_broken[12] = 0.0, 4
-
-    (spall,) = spalls(bonds, PLACES, STEP)
-    assert spall.start == (PLACES[12], PLACES[13])
-
-
-def test_a_spall_is_described_without_the_rounding_of_products() -> None:
-    assert (3 * 0.1, 696 * 1e-3) == (0.30000000000000004, 0.6960000000000001)
-    described = Spall(3 * 0.1, (696 * 1e-3, 1e-7 / 3.0), (0.25, 1.0)).describe()
-
-    assert described == {"time": 0.3, "start": [0.696, 3.33333333333e-8], "end": [0.25, 1.0]}
-
-
 def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
     assert spalls(tough, PLACES, STEP) == []
     opened(tough, 20, step=5)
@@ -152,21 +108,3 @@ def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
     assert spalls(tough, PLACES, STEP)[0].describe()["began"] == 5e-3
     tough.bond[2, 18], tough.bond_broken[2, 18] = 1.0, OPENING  # one that still crosses it
     assert spalls(tough, PLACES, STEP) == []
-
-
-def test_open_planes_within_a_horizon_are_one_spall(tough) -> None:
-    for plane, step in ((20, 5), (23, 2), (30, 1)):
-        opened(tough, plane, step)
-    assert [(spall.start, spall.end) for spall in spalls(tough, PLACES, STEP)] == [
-        ((PLACES[30], PLACES[31]), (PLACES[30], PLACES[31])),
-        ((PLACES[23], PLACES[24]), (PLACES[20], PLACES[24])),
-    ]
-
-
-def test_damage_counts_what_is_left_of_opening_bonds(tough) -> None:
-    opened(tough, 20, step=5)
-    tough.bond[tough.bond_broken >= 0] = 1.0
-    tough.bond_broken[tough.bond_broken >= 0] = OPENING
-    tough.opening.bundle.furthest[: len(tough.opening)] = 1e-3 + 0.4 * 9e-3
-    # 0.4 of the half of its family that node 20 would lose
-    assert tough.damage()[20] == pytest.approx(0.2, rel=1e-12)

@@ -5,7 +5,6 @@ import pytest
 
 from dembound.bar.part import BarPart
 from dembound.bar.scene import build_bar
-from dembound.errors import RunError
 from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps
@@ -41,22 +40,6 @@ def part_of(simulation: Simulation) -> BarPart:
     return part
 
 
-def test_stresses_under_uniform_strain_and_energies_of_springs_and_bonds(simulation) -> None:
-    u = np.zeros((3, 41))
-    u[0] = 1e-4 * np.linspace(0.0, 1.0, 41)
-    corrected = METHODS["peridynamics"] | {"corrected_ends": True}
-    parts = [part_of(simulation(method=each)) for each in (*METHODS.values(), corrected)]
-    (springs, none), (nothing, bonds), _, _, both = (part.stored(u) for part in parts)
-
-    for part in parts:  # inside, as peridynamics has soft ends of three planes
-        # E·1e-4; displacements of up to 1e-4 rounded, over elongations of 2.5e-6
-        np.testing.assert_allclose(part.stress(u)[4:-4], 2.5e5, rtol=40 * 8 * EPS)
-    # ½ Eε² of 1 m³; elongations of 2.5e-6 m are differences of up to 1e-4 m
-    assert (springs, sum(both)) == pytest.approx((12.5, 12.5), rel=80 * EPS)
-    assert none == nothing == 0.0
-    assert 0.0 < both[0] == pytest.approx(12.5 - bonds, rel=1e-9)
-
-
 def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(simulation, method: dict) -> None:
     whole, run = (simulation(probes=(20, 35), method=method) for _ in range(2))
     records, reported = [], []
@@ -81,46 +64,3 @@ def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(simulation, 
     for cracks in reported:
         np.testing.assert_allclose(cracks.position[:, 0], 0.025 * cracks.pair.mean(axis=1), rtol=8 * EPS)
         assert not cracks.shear.any()
-
-
-def test_laws_are_reported_with_the_step_of_the_change(simulation) -> None:
-    for kind, name in (("switch", "peridynamics, m = 3"), ("patch", "finite differences and peridynamics, m = 3")):
-        run = simulation(method=METHODS[kind])
-        run.advance(70)
-        (first, zero), (second, step) = run.state.laws
-        assert (first, zero, second) == ("finite differences", 0, name)
-        # at that step, not before, some spring has come to 0.9 of the critical stretch
-        again = simulation(method=METHODS["finite_difference"])
-        limit = 0.9 * 8e6 / 2.5e9 * 0.025
-        again.advance(step - 1)
-        assert np.diff(again.state.displacement[0]).max() < limit
-        again.advance(1)
-        assert np.diff(again.state.displacement[0]).max() >= limit
-
-
-@pytest.mark.parametrize("kind", ["peridynamics", "patch"])
-def test_a_bar_has_blown_up_when_it_swings_beyond_what_a_step_can_follow(simulation, kind: str) -> None:
-    swing, slow = np.zeros((2, 3, 41))
-    swing[0, 10:31] = (-1.0) ** np.arange(21)  # close to the fastest mode
-    swing[0, 20] *= 1.5
-    slow[0] = 1.0
-    slow[0, 7] = -1.1
-    for courant, where in ((0.5, (None, None)), (2.5, (20, 7))):
-        part = part_of(simulation(courant, method=METHODS[kind]))
-        assert part.blown_up(swing) == where[0]
-        assert part.blown_up(np.abs(slow)) is None  # slow motion is sound at any step
-        # what breaks at an unstable step has blown up, though what is left is soft enough for any
-        part.bonds.spring_broken[3] = 1
-        part.bonds.spring[:] = 0.0
-        part.bonds.bond[:] = 0.0
-        assert part.blown_up(slow) == where[1]
-
-
-def test_an_answer_that_the_step_is_too_long_for_ends_the_run(simulation, monkeypatch) -> None:
-    run = simulation(0.99, method=METHODS["patch"])
-    limit = 0.98 * UNIT
-    # no such bonds come about by themselves, as the step serves at every stage that the method names
-    monkeypatch.setattr(type(run.scene), "is_stable", lambda scene, bonds, step: step <= limit)
-    monkeypatch.setattr(type(run.scene), "stable_step", lambda scene, bonds: limit)
-    with pytest.raises(RunError, match=rf"allow a time step of {limit:.6g} s only; take a smaller run.time_step"):
-        run.advance(70)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.scene import build_bar
-from dembound.exact.dispersion import courant_limit
+from dembound.bar.scene import build_bar, entering_pressure
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -66,31 +65,27 @@ def test_ends_stand_for_more_of_the_bar(spalling) -> None:
     assert attenuated.supports.damping.tolist() == pytest.approx([expected], rel=8 * EPS)
 
 
-METHODS = {
-    "finite_difference": ({"type": "finite_difference"}, 1.0),
-    "peridynamics": ({"type": "peridynamics", "horizon": 3}, courant_limit(3)),
-    "patch": ({"type": "patch", "horizon": 3}, 1.0),
-}
+TIME = np.array([-1e-5, 5e-5, 2e-4, 4e-4])
+SHAPE = np.array([0.0, 0.25, 1.0, 0.0])
+"""An even triangle of 0.4 ms."""
+DASHPOT = {"type": "viscous_input", "beta_p": 0.5}
 
 
-@pytest.mark.parametrize(("method", "courant"), METHODS.values(), ids=METHODS.keys())
-def test_the_limit_is_that_of_the_stage_that_is_least_stable(spalling, method: dict, courant: float) -> None:
-    scene = build_bar(spalling({"method": method}))
-    limit = scene.step_limit()
-    stages = [scene.stable_step(bonds) for bonds in scene.case.method.stages(scene.rod)]
+@pytest.mark.parametrize(
+    ("side", "end", "wave", "load"),
+    [
+        # of ρcA v = F − βρcA v + 2βρcA v_i, with ρc = 2.5e6 Pa·s/m
+        ("left", DASHPOT, 2.5e6 * 2.0 * 0.5 / 1.5, 12e6 / 1.5),
+        ("right", DASHPOT, 2.5e6 * 2.0 * 0.5 / 1.5, 12e6 / 1.5),
+        ("right", {"type": "matched_layer"}, 2.5e6, 6e6),
+    ],
+)
+def test_a_dashpot_takes_its_part_of_a_load_and_lets_its_wave_in(spalling, side, end, wave, load) -> None:
+    hit = {"name": "hit", "pressure": 12e6, "wave": "hit", "side": side}
+    velocity = 1.0 if side == "left" else -1.0  # inwards
+    shape = {"type": "triangle", "amplitude": velocity, "rise": 2e-4, "fall": 2e-4}
+    case = spalling({"load": [hit], f"boundary.{side}": end | {"wave_p": "in"}, "wave.in": shape})
 
-    assert limit == min(stages)
-    for bonds, stable in zip(scene.case.method.stages(scene.rod), stages, strict=True):
-        assert scene.is_stable(bonds, limit * (1.0 - 1e-12))
-        assert not scene.is_stable(bonds, stable * (1.0 + 1e-12))
-    # that of an endless bar, but for ends 41 nodes apart: ¼(π/40)² at most
-    assert limit * 1000.0 / 0.025 == pytest.approx(courant, rel=0.25 * (np.pi / 40) ** 2)
-
-
-def test_held_ends_do_not_vibrate(spalling) -> None:
-    held = {side: {"type": "fixed"} for side in ("left", "right")}
-    short = {"bar.spacing": 0.5, "method": {"type": "finite_difference"}, "load": [], "boundary": held}
-
-    # one node of m = ρAΔx on two springs EA/Δx: ω² = 2c²/Δx²
-    limit = 2.0 / np.sqrt(2.0 * 1000.0**2 / 0.5**2)
-    assert build_bar(spalling(short)).step_limit() == pytest.approx(limit, rel=8 * EPS)
+    np.testing.assert_allclose(entering_pressure(case, side, TIME, loads=False), wave * SHAPE, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(entering_pressure(case, side, TIME), (wave + load) * SHAPE, rtol=1e-12, atol=1e-6)
+    assert entering_pressure(case, side, np.zeros((2, 3))).shape == (2, 3)

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried, stepped
+from meshes import ORDER, below, buried
 
-from dembound.continuum.edges import edge_lengths, elements_at, free_edges, nodes_at
+from dembound.continuum.edges import edge_lengths, free_edges, traction_in
 from dembound.continuum.mesh import Around, Mesh
 
 
@@ -37,24 +37,49 @@ def test_the_surface_is_what_is_free_beyond_the_box() -> None:
     assert (free_edges(round_a_pipe)[:, [1, 3]] == 2.0).all()
 
 
-def test_the_top_is_where_each_column_ends() -> None:
-    mesh = stepped()
-    lengths = edge_lengths(mesh, "top")
-    y = mesh.positions[:, 1]
-
-    assert lengths[y == 3.0].sum() == pytest.approx(9.0, rel=1e-13)
-    assert lengths[y == 5.0].sum() == pytest.approx(6.0, rel=1e-13)
-    assert lengths.sum() == pytest.approx(15.0, rel=1e-13)
-    ends = {tuple(line) for line in free_edges(mesh).tolist()}
-    assert ends == {(x, 3.0, x + 3.0, 3.0) for x in (-9.0, -6.0, -3.0)} | {(x, 5.0, x + 3.0, 5.0) for x in (6.0, 9.0)}
+TOP = 2.0
 
 
-@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
-def test_nodes_lie_along_the_side_in_order(side: str) -> None:
-    mesh = stepped()
-    axis = 0 if side in ("left", "right") else 1
-    nodes, rectangles = nodes_at(mesh, side), mesh.rectangles[elements_at(mesh, side)]
-    level = rectangles[:, axis + 2 * (side in ("right", "top"))]
+def ground() -> Mesh:
+    """Round a box of 6 m × 2 m at the surface y = 2 m; elements 3 m wide, layers beyond x = −6 m and 15 m."""
+    return Mesh.around((0.0, 0.0, 6.0, TOP), (3.0, 2.0), 4, margin=Around(2, 3, 1, 0), layer=Around(1, 1, 1, 0))
 
-    assert (mesh.positions[nodes, axis] == level[:, None]).all()
-    assert (np.diff(mesh.positions[nodes, 1 - axis], axis=1) > 0.0).all()
+
+@pytest.mark.parametrize(("first", "last"), [(6.0, 15.0), (7.1, 10.1), (8.0, 13.7), (-6.0, -3.0), (-5.2, -0.7)])
+def test_forces_are_those_of_a_uniform_traction(first: float, last: float) -> None:
+    mesh = ground()
+    traction = traction_in(mesh, (first, 1.9, last, 2.5))
+    x, y = mesh.positions[traction.node].T
+
+    assert (y == TOP).all()
+    assert traction.length == pytest.approx(last - first, rel=1e-12)
+    assert traction.least == pytest.approx(3.0, rel=1e-12)
+    assert not traction.absorbs
+    # shape functions of order 4 have all of these polynomials, whose means over the width follow
+    for power in range(5):
+        mean = (last ** (power + 1) - first ** (power + 1)) / ((power + 1) * (last - first))
+        assert traction.share @ x**power == pytest.approx(mean, rel=1e-11)
+
+
+def test_sides_of_the_box_and_inner_edges_are_no_surface() -> None:
+    mesh = ground()
+
+    assert traction_in(mesh, (0.0, 1.0, 6.0, 2.0)).length == 0.0  # the body's own surface
+    assert traction_in(mesh, (7.0, -1.0, 12.0, 1.9)).length == 0.0
+    assert len(traction_in(mesh, (7.0, -1.0, 12.0, 1.9)).node) == 0
+    below = Mesh.around((0.0, 0.0, 6.0, TOP), (3.0, 2.0), 4, margin=Around(0, 0, 2, 0), layer=Around(0, 0, 1, 0))
+    side = traction_in(below, (-1.0, -3.5, 0.5, -0.5))  # the left edge below the body is free
+    x, y = below.positions[side.node].T
+    assert (x == 0.0).all()
+    assert side.length == pytest.approx(3.0, rel=1e-12)
+    assert side.least == pytest.approx(2.0, rel=1e-12)
+    assert side.share @ y == pytest.approx(-2.0, rel=1e-12)
+
+
+def test_layers_are_not_loaded() -> None:
+    mesh = ground()
+    traction = traction_in(mesh, (11.0, 2.0, 16.0, 2.0))
+
+    assert traction.absorbs
+    assert mesh.positions[traction.node, 0].max() == 15.0
+    assert traction_in(mesh, (-9.0, -6.0, 18.0, -1.5)).absorbs is False  # outer edges of layers are held

@@ -1,11 +1,22 @@
 """Places of points in a mesh, and displacements and their slopes there."""
 
+import math
+
 import numpy as np
 import pytest
-from meshes import buried, one_across, stepped, uneven
+from meshes import buried, uneven
 
-from dembound.continuum.interpolation import interpolation, located, slopes
-from dembound.continuum.mesh import Mesh
+from dembound.continuum.interpolation import (
+    FORCES,
+    HOLES,
+    PASSED,
+    TIES,
+    WIDER,
+    NearField,
+    interpolation,
+    located,
+    slopes,
+)
 
 
 def test_a_polynomial_and_its_slopes_are_interpolated_and_extrapolated() -> None:
@@ -50,27 +61,43 @@ def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -
     np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
 
 
-def test_slopes_in_the_element_that_closes_a_period() -> None:
-    mesh = Mesh.uniform(order=3, element=(1.5, 1.0), cells=(4, 2), periodic=(True, False))
-    point = np.array([[5.7, 0.3]])  # of the last column, whose right nodes are those of the first one
-    local = mesh.rule.slope(np.array([0.6]))[0] / 0.75
-
-    np.testing.assert_allclose(slopes(mesh, point)[0].reshape(4, 4).sum(axis=0), local, rtol=1e-12)
+HOLE = (-2.0, -1.0, 4.0, 1.0)
+"""6 m × 2 m, 3 m from elements: its field varies within 4 m."""
 
 
-def test_points_beyond_a_periodic_side_have_places_within_it() -> None:
-    mesh = one_across()
-    element, place = located(mesh, np.array([[-1.0, -1.0], [7.0, 0.5]]))
-    assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
-    np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
+def blast(gap: float = 3.0) -> NearField:
+    return NearField(HOLE, gap, "pressure")
 
 
-def test_points_above_a_lower_surface_belong_to_the_highest_element_below() -> None:
-    """Beside the box by their columns; those in the box that are beside nothing to the nearest element."""
-    mesh = stepped()
-    points = np.array([[-4.0, 3.5], [-8.9, 8.0], [7.0, 5.1], [6.1, 9.5], [5.9, 8.5], [0.2, 4.0]])
-    element, local = located(mesh, points)
+@pytest.mark.parametrize("order", [3, 6])
+def test_elements_beside_a_force_are_in_proportion_to_its_distance(order: int) -> None:
+    near, far = (NearField((5.0, 5.0, 5.0, 5.0), gap, "force") for gap in (8.0, 16.0))
+    side = near.largest_side(order, 1e-3)
 
-    assert [tuple(mesh.elements[each]) for each in element] == [(1, 2), (0, 2), (5, 3), (5, 3), (5, 3), (2, 2)]
-    assert local[0, 1] == pytest.approx(1.0 + 2.0 * 0.5 / 3.0)
-    assert (local[:, 1] > 1.0).all()
+    assert side == FORCES[order] * 8.0
+    assert far.largest_side(order, 1e-3) == pytest.approx(2.0 * side)
+    assert near.error(order, side) == pytest.approx(1e-3)
+    assert near.error(order, 2.0 * side) == pytest.approx(8e-3)
+    assert near._replace(gap=0.0).error(order, side) == near._replace(gap=0.0).largest_side(order, 1e-3) == 0.0
+
+
+@pytest.mark.parametrize("order", [3, 4, 5, 6])
+def test_elements_as_wide_as_the_box_round_a_blast_have_the_measured_error_and_narrower_ones_less(order: int) -> None:
+    assert blast().distance == 4.0
+    assert blast().error(order, 8.0) == HOLES[order]
+    assert blast().error(order, 4.0) == pytest.approx(HOLES[order] * 0.5 ** (order + 1))
+    assert blast().error(order, 16.0) == pytest.approx(HOLES[order] * 2.0**WIDER)
+    assert blast(7.0).error(order, 16.0) == HOLES[order]
+    for accuracy in (1e-3, 0.1):
+        assert blast().error(order, blast().largest_side(order, accuracy)) == pytest.approx(accuracy)
+
+
+def test_beside_a_hole_that_waves_pass_it_is_the_part_of_the_motion_that_the_hole_makes() -> None:
+    passed = blast()._replace(source="waves", wave_number=0.1)
+    assert passed.error(4, 8.0) == pytest.approx(PASSED * 0.1 * 3.0 * (3.0 / 6.0) * HOLES[4])
+    assert passed.error(4, 4.0) == pytest.approx(passed.error(4, 8.0) / 8.0)
+    assert passed.error(4, passed.largest_side(4, 1e-3)) == pytest.approx(1e-3)
+    assert passed._replace(wave_number=math.inf).error(4, 8.0) == HOLES[4]
+    assert passed._replace(wave_number=0.0).largest_side(4, 1e-3) == math.inf
+    assert passed.of_ties(1.0) == 0.0 == passed._replace(source="force").of_ties(1.0)
+    assert blast().of_ties(0.5) == pytest.approx(TIES / 64.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.continuum.layer import Absorption, Profile, along_in, along_needed
+from dembound.continuum.layer import Profile, along_in, along_needed
 from dembound.continuum.medium import Medium
 
 LAYER = Profile(thickness=30.0, speed=1000.0, inner=200.0)
@@ -21,10 +21,6 @@ def test_the_strength_belongs_to_the_reflection() -> None:
     assert LAYER.strongest == pytest.approx(3.0 * 1000.0 * np.log(1e4) / 60.0)
 
 
-def test_the_shift_is_that_of_what_lies_inside() -> None:
-    np.testing.assert_allclose(LAYER.shift(np.array([0.0, 0.5, 1.0])), [0.75, 0.375, 0.0])
-
-
 @pytest.mark.parametrize("q", [0.0, 0.3, 1.0])
 def test_the_memory_follows_its_equation(q: float) -> None:
     """ψ′ = −(σ + α)ψ − σ g for κ = 1; for a constant g the recursion is exact."""
@@ -37,13 +33,6 @@ def test_the_memory_follows_its_equation(q: float) -> None:
     exact = -sigma / (sigma + alpha) * (1.0 - np.exp(-(sigma + alpha) * 50 * step))
 
     assert memory == pytest.approx(exact, rel=1e-12, abs=1e-300)
-
-
-def test_nothing_is_remembered_where_neither_acts() -> None:
-    bare = Profile(30.0, 1000.0, 200.0, Absorption(shift=0.0))
-
-    assert bare.gain(np.zeros(1), 1e-3).tolist() == [0.0]
-    assert bare.decay(np.zeros(1), 1e-3).tolist() == [1.0]
 
 
 def test_the_delay_is_a_part_of_the_step() -> None:
@@ -114,13 +103,6 @@ def largest_growth(medium: Medium, part: float) -> float:
             )
             worst = max(worst, float(np.linalg.eigvals(system).real.max()))
     return worst
-
-
-@pytest.mark.parametrize("speeds", [(400.0, 100.0), (400.0, 282.8), (400.0, 340.0)])
-def test_isotropic_ground_needs_nothing_along_layers(speeds: tuple[float, float]) -> None:
-    medium = Medium.isotropic(2000.0, *speeds)
-    assert along_needed(medium) < 1e-12
-    assert along_in(medium) == 0.0
 
 
 def test_lattices_need_it_from_a_ratio_on() -> None:

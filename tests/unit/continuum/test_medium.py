@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.continuum.medium import Layered, Medium, layered
+from dembound.continuum.medium import Medium, critical_angle, incident_wave, reflected_waves, traction_of
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
 
@@ -18,49 +18,100 @@ def test_isotropic_speeds_do_not_depend_on_the_direction(degrees: float) -> None
     assert abs(polarisations[:, 0] @ direction) < 1e-12
 
 
-def test_speeds_along_the_axes() -> None:
-    rock = Medium(2000.0, c11=8e9, c22=6e9, c12=2e9, c66=1e9)
-
-    np.testing.assert_allclose(rock.plane_waves((1.0, 0.0))[0], np.sqrt([1e9 / 2000, 8e9 / 2000]))
-    np.testing.assert_allclose(rock.plane_waves((0.0, 1.0))[0], np.sqrt([1e9 / 2000, 6e9 / 2000]))
-    assert rock.normal_speed(0) == pytest.approx(np.sqrt(4e6))
-    assert rock.normal_speed(1) == pytest.approx(np.sqrt(3e6))
+DENSITY, C_P, SURFACE = 2500.0, 1000.0, 7.0
+GENERAL = Medium(DENSITY, c11=2.5e9, c22=2.2e9, c12=0.4e9, c66=0.9e9, c16=0.2e9, c26=0.3e9)
+ORTHOTROPIC = Medium(DENSITY, 2.5e9, 2.5e9, 0.0, 0.625e9)
+"""The square lattice without friction: C66 = K/4."""
 
 
-def test_a_rotated_medium_has_rotated_waves() -> None:
-    """Constants of an orthotropic medium turned by 30°, so that c16 and c26 act, from its 4th-order tensor."""
-    plain = Medium(2000.0, c11=8e9, c22=6e9, c12=2e9, c66=1e9)
-    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
-    # stresses and strains (xx, yy, γ) under a rotation by 30°, Voigt
-    bond = np.array([[c * c, s * s, -2 * s * c], [s * s, c * c, 2 * s * c], [s * c, -s * c, c * c - s * s]])
-    m = bond @ plain.matrix @ bond.T
-    turned = Medium(2000.0, m[0, 0], m[1, 1], m[0, 1], m[2, 2], m[0, 2], m[1, 2])
-
-    np.testing.assert_allclose(turned.plane_waves((c, s))[0], plain.plane_waves((1.0, 0.0))[0], rtol=1e-12)
-    np.testing.assert_allclose(turned.plane_waves((-s, c))[0], plain.plane_waves((0.0, 1.0))[0], rtol=1e-12)
-    np.testing.assert_allclose(turned.matrix, m, rtol=1e-12)
-    assert turned.moduli.tolist() == [m[0, 0], m[1, 1], m[0, 1], m[2, 2], m[0, 2], m[1, 2]]
+def isotropic(ratio: float) -> Medium:
+    """c_s over c_p."""
+    return Medium.isotropic(DENSITY, C_P, ratio * C_P)
 
 
-def test_layers_at_heights() -> None:
-    soil = Medium.isotropic(1800.0, 400.0, 200.0)
-    ground = Layered((ROCK, soil, ROCK), (10.0, 20.0))
-
-    assert ground.number_at(np.array([-5.0, 10.0, 10.1, 20.0, 99.0])).tolist() == [
-        0,
-        0,
-        1,
-        1,
-        2,
-    ]  # the lower on a joint
-    assert (ground.at(15.0), ground.at(10.0)) == (soil, ROCK)
-    assert layered(ground) is ground
-    assert layered(soil).only == soil
-    with pytest.raises(ValueError, match="needs one medium, not 3 layers"):
-        assert ground.only
+def amplitudes(medium: Medium, kind: str, angle: float) -> dict[str, float]:
+    """Signed amplitudes of reflected waves: P along its way, SV to the right of it as one looks along."""
+    found = {}
+    for wave in reflected_waves(medium, incident_wave(medium, kind, angle), SURFACE):
+        x, y = np.array(wave.slowness) / np.hypot(*wave.slowness)
+        speed = 1.0 / np.hypot(*wave.slowness)
+        is_p = abs(speed - C_P) < 1e-6 * C_P
+        found["p" if is_p else "sv"] = float(np.array(wave.motion) @ ((x, y) if is_p else (y, -x)))
+    return found
 
 
-@pytest.mark.parametrize("joints", [(10.0,), (20.0, 10.0)])
-def test_joints_must_fit_the_layers(joints: tuple[float, ...]) -> None:
-    with pytest.raises(ValueError, match=r"3 layers have 2 joints, not 1|must ascend"):
-        Layered((ROCK, ROCK, ROCK), joints)
+@pytest.mark.parametrize(("ratio", "angle"), [(0.3, 10.0), (0.577, 25.0), (0.7071, 60.0)])
+def test_p_waves_are_reflected_as_in_the_textbook(ratio: float, angle: float) -> None:
+    """Potentials of Achenbach (1973), Wave Propagation in Elastic Solids, section 5.6; κ = c_p/c_s, κ sin j = sin θ.
+
+    PP = (sin 2θ sin 2j − κ² cos² 2j)/(sin 2θ sin 2j + κ² cos² 2j); displacements of SV are κ times the potential's.
+    """
+    theta, kappa = np.radians(angle), 1.0 / ratio
+    j = np.arcsin(ratio * np.sin(theta))
+    both, shear = np.sin(2 * theta) * np.sin(2 * j), kappa**2 * np.cos(2 * j) ** 2
+    found = amplitudes(isotropic(ratio), "p", angle)
+
+    assert found["p"] == pytest.approx((both - shear) / (both + shear), abs=1e-12)
+    assert abs(found["sv"]) == pytest.approx(2 * kappa * np.sin(2 * theta) * np.cos(2 * j) / (both + shear), abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["sv", "p"])
+def test_straight_up_the_surface_moves_twice_as_far(kind: str) -> None:
+    assert amplitudes(isotropic(0.5), kind, 0.0) == {kind: pytest.approx({"p": -1.0, "sv": -1.0}[kind])}
+
+
+MEDIA = {"isotropic": isotropic(0.5), "orthotropic": ORTHOTROPIC, "general": GENERAL}
+
+
+@pytest.mark.parametrize("medium", MEDIA.values(), ids=MEDIA)
+@pytest.mark.parametrize(("kind", "angle"), [("sv", -15.0), ("p", 35.0)])
+def test_the_surface_is_free_and_takes_no_energy(medium: Medium, kind: str, angle: float) -> None:
+    incident = incident_wave(medium, kind, angle)
+    waves = [incident.shifted(0.3), *reflected_waves(medium, incident.shifted(0.3), SURFACE)]
+    tractions = [traction_of(medium, *wave.slowness) @ wave.motion for wave in waves]
+    along = np.array([(x, SURFACE) for x in (-5.0, 0.0, 40.0)])
+    flux = [wave.flux(medium)[1] for wave in waves]
+
+    np.testing.assert_allclose(sum(tractions), 0.0, atol=1e-9 * np.abs(tractions[0]).max())
+    for wave in waves[1:]:  # all reach a place on the surface at the same time
+        np.testing.assert_allclose(wave.delays(along), waves[0].delays(along), atol=1e-15)
+    assert sum(flux) == pytest.approx(0.0, abs=1e-9 * flux[0])
+    assert flux[0] > 0.0 > max(flux[1:])
+
+
+@pytest.mark.parametrize("ratio", [0.3, 0.7071])
+def test_sv_waves_of_isotropic_media_have_the_critical_angle_of_snell(ratio: float) -> None:
+    critical = critical_angle(isotropic(ratio), "sv")
+
+    assert critical == pytest.approx(np.degrees(np.arcsin(ratio)), abs=1e-6)
+    assert reflected_waves(isotropic(ratio), incident_wave(isotropic(ratio), "sv", critical + 0.01), 0.0) is None
+    assert reflected_waves(isotropic(ratio), incident_wave(isotropic(ratio), "sv", critical - 0.01), 0.0) is not None
+    assert critical_angle(isotropic(ratio), "p") == 90.0
+
+
+@pytest.mark.parametrize("kind", ["sv", "p"])
+def test_a_mass_on_the_surface_delays_what_it_sends_back(kind: str) -> None:
+    """Against the exact amplitudes at one frequency: (T − iωm P) a = −(t − iωm p), the same for waves e^(−iωt).
+
+    Of the first order in μ = ωm/(ρc), so that a tenth of the mass leaves a hundredth of the error.
+    """
+    medium, omega = GENERAL, 2.0 * np.pi
+    incident = incident_wave(medium, kind, 25.0)
+    errors = []
+    for mass in (1e3, 1e2):
+        waves = reflected_waves(medium, incident, 0.0)
+        motions = np.array([np.array(wave.motion) / np.hypot(*wave.motion) for wave in waves]).T
+        tractions = np.array(
+            [traction_of(medium, *wave.slowness) @ motion for wave, motion in zip(waves, motions.T, strict=True)]
+        ).T
+        own = traction_of(medium, *incident.slowness) @ incident.motion
+        inertia = -1j * omega * mass
+        exact = np.linalg.solve(tractions - inertia * motions, -(own - inertia * np.array(incident.motion)))
+        found = np.zeros(2, dtype=complex)
+        for wave in reflected_waves(medium, incident, 0.0, mass):
+            number = int(np.argmin([abs(wave.slowness[1] - other.slowness[1]) for other in waves]))
+            found[number] += (np.array(wave.motion) @ motions[:, number]) * np.exp(1j * omega * wave.delay)
+        errors.append(np.abs(found - exact).max())
+        size = np.abs(exact - [np.hypot(*wave.motion) for wave in waves]).max()
+    assert errors[1] < 0.012 * errors[0]
+    assert errors[1] < 0.01 * size

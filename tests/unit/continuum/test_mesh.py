@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, below, buried, one_across, stepped, uneven
+from meshes import ORDER, buried, stepped, uneven
 
 from dembound.continuum.edges import free_edges
 from dembound.continuum.mesh import NONE, Around, Mesh
@@ -22,14 +22,6 @@ def test_the_box_is_left_out() -> None:
     assert on_sides.sum() == 2 * (2 * ORDER + 1) + 2 * (ORDER + 1) - 4
     # without the inner nodes of two elements and of the edge between them
     assert mesh.count == (8 * ORDER + 1) * (5 * ORDER + 1) - (2 * ORDER - 1) * (ORDER - 1)
-
-
-@pytest.mark.parametrize("right", [1, 3])
-def test_the_outer_edge_is_held_for_any_size_of_element(right: int) -> None:
-    """Sizes that binary numbers do not have."""
-    mesh = Mesh.uniform(order=5, element=(0.1, 0.7), cells=(7, 3), layer=Around(0, right, 0, 0), origin=(0.3, 0.0))
-
-    assert mesh.held.sum() == 3 * 5 + 1
 
 
 def test_a_periodic_mesh_has_no_last_line() -> None:
@@ -58,21 +50,6 @@ def test_columns_and_rows_have_their_sizes() -> None:
     assert set(map(tuple, mesh.shapes.tolist())) == {(w, h) for w in mesh.widths for h in mesh.heights}
 
 
-def test_depth_is_a_share_of_the_thickness_of_unequal_elements() -> None:
-    mesh = uneven()
-    x, y = mesh.positions.T
-    qx = np.maximum((4.0 - x) / 4.0, 0.0) + np.maximum((x - 7.0) / 2.0, 0.0)
-    qy = np.maximum((3.0 - y) / 3.0, 0.0) + np.maximum((y - 7.0) / 4.0, 0.0)
-
-    np.testing.assert_allclose(mesh.depth, np.stack([qx, qy], axis=1), rtol=0.0, atol=1e-14)
-    assert (mesh.held == ((x == 0.0) | (x == 9.0) | (y == 0.0) | (y == 11.0))).all()
-    layers = [np.isin(mesh.elements[:, 0], (0, 1, 4)), np.isin(mesh.elements[:, 1], (0, 3, 4))]
-    assert (mesh.absorbs == np.stack(layers, axis=1)).all()
-    assert mesh.axes[0].thickness == (4.0, 2.0)
-    assert mesh.axes[1].thickness == (3.0, 4.0)
-    assert mesh.inner == 4.0
-
-
 def test_elements_round_a_box_divide_its_sides() -> None:
     """At most the largest size is exceeded by rounding: (0.1 + 0.2)/0.1 is above 3."""
     mesh = Mesh.around((0.0, 0.0, 6.0, 2.5), (2.5, 2.0), margin=Around(1, 2, 1, 0), layer=Around())
@@ -83,21 +60,6 @@ def test_elements_round_a_box_divide_its_sides() -> None:
 
     mesh = Mesh.around((0.0, 0.0, 0.3, 0.1 + 0.2), (0.1, 0.1), margin=Around(), layer=Around())
     assert mesh.cells == (3, 3)
-
-
-def test_rows_above_a_box_reach_the_free_surface() -> None:
-    """2.3 m above it: two rows of 1.15 m, as those of the box are 2 m high; layers only at the other sides."""
-    arguments = dict(margin=Around(1, 1, 2, 0), layer=Around(1, 1, 1, 0))
-    mesh = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-0.7, **arguments)
-
-    assert mesh.heights[:5] == (2.0,) * 5
-    np.testing.assert_allclose(mesh.heights[5:], [1.15, 1.15], rtol=1e-15)
-    assert mesh.box == (2, 3, 4, 5)
-    assert mesh.positions[:, 1].max() == pytest.approx(-0.7, abs=1e-14)
-    assert not mesh.held[mesh.positions[:, 1] > -0.8].all()
-    # at the surface the box is as without one
-    at_top = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-3.0, **arguments)
-    assert at_top.heights == Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), **arguments).heights
 
 
 def test_columns_beside_the_box_end_at_their_own_levels() -> None:
@@ -117,14 +79,6 @@ def test_columns_beside_the_box_end_at_their_own_levels() -> None:
     ]
 
 
-def test_what_lies_between_the_layers() -> None:
-    low, high = buried().between_layers
-
-    np.testing.assert_allclose([*low, *high], [7.0, 18.0, 22.0, 24.0], rtol=1e-14)
-    low, high = below().between_layers
-    np.testing.assert_allclose([*low, *high], [-3.0, -2.0, 9.0, 2.0], rtol=1e-14)
-
-
 def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
     """Their nodes but for those on held edges are known."""
     margin, layer = Around(right=1, bottom=1), Around(right=1, bottom=1)
@@ -134,18 +88,6 @@ def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
     np.testing.assert_array_equal(mesh.on_mirrors(0), np.flatnonzero((x == 0.0) & (y > -4.0)))
     assert len(mesh.on_mirrors(1)) == 0
     assert {tuple(line) for line in free_edges(mesh).tolist()} == {(6.0, 2.0, 9.0, 2.0), (9.0, 2.0, 12.0, 2.0)}
-
-
-def test_one_element_across_has_itself_as_its_neighbour() -> None:
-    mesh = one_across()
-    assert mesh.count == ORDER * (3 * ORDER + 1)
-    assert (mesh.nodes[:, :, 0] == mesh.nodes[:, :, -1]).all()
-    assert mesh.areas.sum() == pytest.approx(6.0 * 6.0)
-    assert mesh.sides == (0.0, 6.0, 0.0, 4.0)
-    # cells across the side are left out
-    corners = mesh.positions[mesh.node_cells]
-    assert len(corners) == 3 * ORDER * (ORDER - 1)
-    assert (corners[:, 2] > corners[:, 0]).all()
 
 
 SMALL = {"order": 3, "element": (1.0, 1.0), "cells": (4, 3)}
@@ -160,13 +102,9 @@ NO_PLACE = "leaves no place for a margin or a layer at the top"
         (Mesh.around, BOX | {"box": (0.0, 0.0, 6.0, 0.0)}, "the box is empty"),
         (Mesh.around, BOX | {"surface": 1.0}, "the free surface, y = 1 m, is below the top of the box, 2 m"),
         (Mesh.around, BOX | {"surface": 3.0, "margin": Around(top=1)}, NO_PLACE),
-        (Mesh.around, BOX | {"surface": 3.0, "layer": Around(top=1)}, NO_PLACE),
         (Mesh.around, BOX | {"size": (6.0, 2.0), "layer": Around(left=1), "periodic": (True, False)}, "periodic along"),
         (Mesh.around, BOX | {"layer": Around(left=1), "mirror": Around(left=1)}, "plane of symmetry across axis 0 has"),
-        (Mesh.uniform, SMALL | {"levels": (2, 3)}, ONLY_BESIDE),
-        (Mesh.uniform, SMALL | {"box": (1, 0, 2, 2), "levels": (2, 3)}, ONLY_BESIDE),
         (Mesh.uniform, SMALL | {"box": (1, 1, 2, 3), "periodic": (True, False), "levels": (2, 3)}, ONLY_BESIDE),
-        (Mesh.uniform, SMALL | {"periodic": (True, False), "layer": Around(left=1)}, "along axis 0 has no absorbing"),
         (Mesh.uniform, SMALL | {"layer": Around(bottom=2, top=2)}, "more elements along axis 1 than the mesh, 3"),
     ],
 )

@@ -71,17 +71,6 @@ def test_mean_frequencies_are_those_of_the_motion() -> None:
     assert sizing.wave_number([], ROCK) == 0.0
 
 
-def test_the_slowest_wave_at_the_highest_cut_off_counts() -> None:
-    both = [moved(pulse(1.0)), moved(pulse(0.1))]
-    assert sizing.shortest_wave(both, ROCK) == pytest.approx(500.0 / sizing.cutoff(both[1]), rel=1e-9)
-
-
-def test_the_slowest_direction_of_a_medium_without_symmetry_is_found() -> None:
-    medium = Medium(2500.0, 9e9, 7e9, 2e9, 3e9, 0.4e9, -0.3e9)
-    slowest = min(medium.plane_waves((math.cos(a), math.sin(a)))[0][0] for a in np.linspace(0.0, math.pi, 721))
-    assert sizing.slowest(medium) == pytest.approx(slowest, rel=2e-3)
-
-
 @pytest.mark.parametrize("order", [3, 6])
 def test_elements_return_a_share_of_the_energy_that_is_the_accuracys_square(order: int) -> None:
     signals = [pushed(pulse(0.2))]
@@ -93,16 +82,6 @@ def test_elements_return_a_share_of_the_energy_that_is_the_accuracys_square(orde
     assert sizing.element_error(signals, ROCK, order, 2.0 * size) == pytest.approx(4e-3, rel=0.1)
     assert sizing.element_size(signals, ROCK, order, 1e-2) == pytest.approx(3.1 * size, rel=0.1)
     assert sizing.element_error([pushed(Constant(type="constant", amplitude=1.0))], ROCK, order, size) == 1.0
-
-
-def test_as_many_elements_absorb_as_the_accuracy_needs() -> None:
-    assert [sizing.layer_count(order, 1e-3) for order in (3, 4, 5, 6)] == [5, 3, 3, 2]
-    assert [sizing.layer_count(4, accuracy) for accuracy in (0.5, 2e-2, 1e-2, 2e-4, 1e-6)] == [2, 2, 3, 4, 6]
-    for order in (3, 4, 5, 6):
-        for accuracy in (0.1, 1e-2, 1e-3):
-            assert sizing.layer_error(order, sizing.layer_count(order, accuracy)) <= 0.5 * accuracy
-    assert sizing.layer_error(4, 5) == sizing.layer_error(4, 4)
-    assert sizing.layer_error(4, 100) == sizing.layer_error(4, 6)
 
 
 def test_a_lasting_force_needs_room_in_proportion_to_its_time() -> None:

@@ -9,7 +9,6 @@ from small_cases import GRAINS, small
 from dembound.disks.bearing import BearingTie
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sides import medium_of_side
-from dembound.disks.stability import step_limit
 from dembound.kernels.follower import bearing_forces
 
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
@@ -64,19 +63,3 @@ def test_one_disk_is_pulled_back_by_its_share_of_the_shear_modulus(sides) -> Non
     assert not np.delete(found, edge.nodes, axis=1).any()
     if body.twin is None:  # they bear no net force
         assert np.abs(found.sum(axis=1)).max() < 1e-12 * np.abs(found).max()
-
-
-def test_twins_are_those_of_the_body_and_the_column_has_no_springs() -> None:
-    body = scene(FREE_FIELD)
-    assert body.bearing.node.min() >= body.column_count
-    assert np.array_equal(body.bearing.twin, body.seam.twin[body.bearing.node])
-    assert scene(PERIODIC).bearing.twin.max() == -1
-
-
-def test_very_stiff_springs_shorten_the_step() -> None:
-    """ω_max² is that of the stiffest disk, K/m, where its spring exceeds all contacts."""
-    body = scene(FREE_FIELD, alpha_n=1e5)
-    node, stiffness = body.bearing.node, body.bearing.stiffness[:, 1]
-    longest = 2.0 / np.sqrt((stiffness / body.mass[node]).max())
-    assert 0.97 * longest < step_limit(body) <= longest
-    assert step_limit(scene(FREE_FIELD)) == pytest.approx(step_limit(scene(FREE_FIELD, alpha_n=0.0)), rel=1e-2)

@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dembound.check import check
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds.disks.kind import Disks
-from dembound.running import plan, preflight, require_ready, run_case
+from dembound.running import plan, require_ready
 
 LATTICE: dict[str, Any] = {
     "packing": {"pattern": "A", "size": [10.0, 8.0], "radius": 0.25},
@@ -36,22 +35,6 @@ def test_a_zone_is_as_many_rows_of_a_lattice(bar, depth) -> None:
     assert np.array_equal(body.intact, (y < 0.5 * depth) | (x < 0.5))
 
 
-def test_a_free_field_column_is_intact_as_a_whole(bar) -> None:
-    sides = {side: {"type": "free_field", "intact": 2} for side in ("left", "right")}
-    body = scene(bar, bottom=BOTTOM, **sides)
-    first = body.column_count
-    assert body.intact is not None
-    assert body.intact[:first].all()
-    assert min(nodes.min() for nodes in body.intact_zones.values()) >= first
-    beside = scene(bar, bottom=BOTTOM | {"intact": 2}, left={"type": "free_field"}, right={"type": "free_field"})
-    assert beside.intact is not None
-    assert not beside.intact[:first].all()
-
-
-def test_without_a_zone_all_bonds_may_break(bar) -> None:
-    assert scene(bar, bottom=BOTTOM).intact is None
-
-
 def test_a_zone_of_more_than_half_of_the_body_is_refused(bar) -> None:
     assert scene(bar, bottom=BOTTOM | {"intact": 8}).intact is not None
     with pytest.raises(CaseError, match=r"boundary.bottom.intact: is 9: bonds of 180 of 320 disks would not break"):
@@ -63,14 +46,3 @@ def test_a_zone_may_be_larger_than_the_strip_in_which_its_side_is_examined(bar) 
     wide = {"packing": {"pattern": "A", "size": [40.0, 2.0], "radius": 0.25}, "monitor": LATTICE["monitor"]}
     side = {"type": "viscous_input", "wave_p": "push", "intact": 20}
     require_ready(plan(bar({**LATTICE, **wide, "boundary": {"left": side}})))
-
-
-def test_what_a_kind_computes_before_the_first_step_is_required_of_runs_and_checks(bar, monkeypatch, tmp_path) -> None:
-    def refuse(self, scene) -> None:
-        raise CaseError(["boundary.left: is refused"])
-
-    monkeypatch.setattr(Disks, "late", refuse)
-    for refused in (check, preflight, lambda case: run_case(case, tmp_path)):
-        with pytest.raises(CaseError, match=r"boundary.left: is refused"):
-            refused(bar({"run.time_step": 1e-4}))
-    assert not list(tmp_path.iterdir())

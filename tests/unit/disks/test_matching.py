@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.description import reflected
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import build
@@ -21,11 +20,6 @@ def test_factors_are_those_of_speeds_that_are_not_the_lattices_own(bar) -> None:
 
     # c_s = 500 m/s where the dashpots assume 250
     assert homogenised_beta(other, "right", "s") == pytest.approx(2.0, rel=1e-12)
-
-
-def test_reflection_by_the_impedance_relation() -> None:
-    # a free end, a matched one, dashpots of three times the impedance
-    assert [reflected(beta, 0.8) for beta in (0.0, 0.8, 2.4)] == pytest.approx([1.0, 0.0, -0.5], rel=1e-15)
 
 
 @pytest.mark.parametrize("held", [["y", "rotation"], ["rotation"]])

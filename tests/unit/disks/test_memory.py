@@ -2,12 +2,9 @@
 
 import pytest
 from disk_systems import LAMB
-from small_cases import SURROUNDED, small
 
-from dembound.disks.contacts import layout
-from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, scene_bytes
+from dembound.disks.memory import SceneSizes, expected_bytes
 from dembound.disks.scene import build
-from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.errors import CaseError
 from dembound.machine import Memory
 from dembound.motion import memory
@@ -39,66 +36,6 @@ def test_sizes_are_known_before_the_scene_is_built(scene) -> None:
     assert expected.in_rows == sizes.in_rows
 
 
-def test_the_lines_of_supports_are_known_before_the_scene_is_built(bar) -> None:
-    sides = {"left": {"type": "fixed"}, "bottom": {"type": "viscous"}, "right": {"type": "viscous"}}
-    scene = build(bar({**FREE, "packing": PATTERNS["A"], "boundary": sides, "motion.held": []}))
-
-    # three components of fixed disks and of none more of viscous ones, whose rotation is free
-    supported = scene.sizes.supported
-    assert supported <= SceneSizes.expected(scene.case).supported <= 1.6 * supported
-
-
-@pytest.mark.parametrize("in_rows", [True, False])
-def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
-    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
-    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}}))
-    body, rows, places = scene.assembly, scene.rows[0], scene.layout
-    arrays = [body.positions, body.radii, body.brick_particle, body.tile, body.pairs, body.contact_type, places.slot]
-    arrays += [scene.mass, scene.inertia, scene.cell_fraction]
-    arrays += [places.node] if in_rows else [rows.start, rows.neighbour, rows.contact_type]
-
-    # rows that are shared by all copies, 40 times as few, are not counted
-    assert scene_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    "more", [{}, {"pb_ten": 1e6, "pb_scatter": {"type": "weibull", "shape": 5.0}, "dp_nratio": 0.1}]
-)
-@pytest.mark.parametrize("in_rows", [True, False])
-def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows, more) -> None:
-    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
-    material = {f"material.{key}": value for key, value in {"law": "linearpbond", **more}.items()}
-    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, **material}))
-    (pairs,) = contact_lists(scene).values()
-    kept, stored = (
-        pairs.arrays,
-        ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "force"),
-    )
-    arrays = [getattr(kept, name) for name in stored] + [kept.start, kept.end, pairs.live, pairs.image]
-    arrays += [pairs.arms, pairs.origin, pairs.cells.member]
-    if in_rows:
-        plan = pairs._plan.plan
-        arrays += [plan.row, plan.column, plan.lane]
-    if more:
-        arrays += [pairs.limits.factor, pairs.factors.tile, pairs.viscosity, pairs.drag, pairs.dashpots.mass]
-
-    # numbers of listed pairs differ between bricks
-    assert pairs_bytes(scene.case, scene.sizes) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
-
-
-def test_what_is_recorded_counts(bar) -> None:
-    def need(**changes) -> float:
-        alone = {"output.pictures": False, "run.checkpoint": 0.0}
-        case = bar({**FREE, "packing": {**RANDOM, "bricks": [4000, 100]}, **alone, **changes})
-        return expected_bytes(case)
-
-    assert need(**{"output.snapshots": 1}) == need(**{"output.snapshots": 9}) > need(**{"output.snapshots": 0})
-    assert need(**{"output.snapshots": 0, "run.checkpoint": 300.0}) > need(**{"output.snapshots": 0})
-    assert need(**{"output.stress": True}) > need()
-    assert need(**{"output.peaks": True}) > need()
-    assert need(**{"material.law": "linearpbond"}) > 1.4 * need()
-
-
 def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:
     monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
     monkeypatch.setattr(random_brick, "load_or_pack", None)  # a call would raise a TypeError
@@ -118,12 +55,3 @@ def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
     assert sizes.moving == pytest.approx(scene.layout.count, rel=0.01)
     assert sizes.ties == 80
     assert expected_bytes(case) == pytest.approx(scene.largest_memory, rel=0.02)
-
-
-def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:
-    """An element of order 4 has 25 nodes; beside a column there is also its disk, and each monitor has a twin."""
-    places = [{"name": "in", "position": [6.5, 3.5]}, {"name": "beyond", "position": [-1.0, 3.5]}]
-    waves = {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}
-    for changes, probes in (({}, 26), (waves, 29)):
-        case = small(SURROUNDED, changes={"monitor": places, **changes})
-        assert SceneSizes.expected(case).probes == build(case).sizes.probes == probes

@@ -2,25 +2,18 @@
 
 import numpy as np
 import pytest
+from small_cases import GROUND, Tables, small
 
-from dembound.disks.scene import build, with_boundaries
+from dembound.casefile import Case
+from dembound.disks.scene import DiskScene, build
 from dembound.disks.sides import boundary_medium
+from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError, PackingError
 
 RANDOM = {
     "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
     "motion.held": [],
 }
-
-
-def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
-    scene = build(bar({"boundary.bottom": {"type": "fixed"}, "motion.held": ["y", "rotation"]}))
-    supports = scene.supports
-
-    assert set(supports.component) == {0}
-    assert supports.prescribed.sum() == 20
-    # the upper disk of each end has the dashpot ρc_pD, the lower is fixed
-    assert sorted(supports.damping[supports.damping > 0.0]) == [2500.0 * 1000.0 * 0.5] * 2
 
 
 def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
@@ -32,17 +25,6 @@ def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
     for component, stiffness in ((1, law.normal[0]), (2, law.bending[0])):
         chosen = supports.stiffness[top & (supports.component == component)]
         np.testing.assert_allclose(chosen, 20 * [2.0 * stiffness], rtol=1e-14)
-
-
-def test_half_masses_follow_the_boundaries(bar) -> None:
-    whole = build(bar())
-    half = build(bar({"boundary.right.half_mass": True}))
-    right = half.edges["right"].nodes
-
-    assert (half.mass / whole.mass)[right].tolist() == [0.5, 0.5]
-    assert (half.inertia / whole.inertia)[right].tolist() == [0.5, 0.5]
-    assert np.delete(half.mass, right).tolist() == np.delete(whole.mass, right).tolist()
-    assert with_boundaries(half, whole.case).mass.tolist() == whole.mass.tolist()
 
 
 def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
@@ -58,22 +40,7 @@ def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -
     assert media[2].s_wave_speed == pytest.approx(500.0, rel=1e-12)
 
 
-def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
-    packing = {**RANDOM["packing"], "bond_gap": 0.02}
-    scene = build(
-        bar({**RANDOM, "packing": packing, "material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}})
-    )
-
-    assert (scene.ground.brick.gaps > 0.0).any()
-    assert all(np.isfinite(rows.constants).all() for rows in scene.rows)
-
-
 TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}
-STANDING = {
-    "static": {"boundary": {"bottom": {"type": "fixed"}}},
-    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
-}
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 
 
 def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) -> None:
@@ -83,27 +50,11 @@ def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) 
     assert away.min() >= 2.0
     near = np.hypot(*(whole.assembly.positions - [6.0, 5.0]).T) < 2.0
     assert hollow.count == whole.count - np.count_nonzero(near) - hollow.assembly.loose + whole.assembly.loose
-    assert (hollow.before, hollow.kept) == (None, None)
     for side, edge in whole.edges.items():
         left = hollow.edges[side]
         assert np.array_equal(left.positions, edge.positions)
         assert np.array_equal(hollow.assembly.positions[left.nodes], left.positions)
         assert left.length == edge.length
-
-
-@pytest.mark.parametrize("boundary", [{}, FREE_FIELD], ids=["free", "free field"])
-def test_an_excavated_scene_knows_what_was_before(bar, boundary: dict) -> None:
-    tables = {**RANDOM, **STANDING, "boundary": boundary, "wave": {}}
-    shaft = {"name": "shaft", "type": "rectangle", "corners": [8.5, 4.0, 10.5, 6.0]}
-    scene = build(bar({**tables, "hole": [shaft, {**TUNNEL, "stage": "after"}]}))
-    before, after = build(bar({**tables, "hole": [shaft]})), build(bar({**tables, "hole": [shaft, TUNNEL]}))
-
-    for found, expected in ((scene, after), (scene.before, before)):
-        assert np.array_equal(found.assembly.positions, expected.assembly.positions)
-        assert np.array_equal(found.assembly.pairs, expected.assembly.pairs)
-        assert found.monitors == expected.monitors
-    assert np.array_equal(scene.before.assembly.positions[scene.kept], scene.assembly.positions)
-    assert scene.before.before is None
 
 
 def test_holes_that_leave_nothing_are_refused(bar) -> None:
@@ -114,3 +65,115 @@ def test_holes_that_leave_nothing_are_refused(bar) -> None:
     ):
         with pytest.raises(error, match=line):
             build(bar({**tables, "hole": [{"name": "pit", "type": "rectangle", "corners": corners}]}))
+
+
+BESIDE = {"type": "free_field"}
+BASE = {"type": "viscous_input", "wave_s": "pulse"}
+TWO_BRICKS = {"size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]}
+PACKINGS = {
+    "A": {"pattern": "A", "size": [4.0, 3.0], "radius": 0.25},
+    "C": {"pattern": "C", **TWO_BRICKS, "edge_radius": 0.26},
+}
+
+
+@pytest.fixture
+def ground(bar):
+    """Makes ground between free-field sides, shaken from below."""
+
+    def make(pattern: str = "A", **changes: object) -> Case:
+        boundary = {"left": BESIDE, "right": BESIDE, "bottom": BASE}
+        tables = {"packing": PACKINGS[pattern], "boundary": boundary, "monitor": [], "motion.held": []}
+        return bar({**tables, **changes})
+
+    return make
+
+
+def test_each_monitor_has_a_twin_in_the_column(ground) -> None:
+    monitors = [{"name": "wall", "position": [0.1, 1.2]}, {"name": "crown", "position": [2.2, 2.9]}]
+    scene = build(ground(monitor=monitors))
+
+    assert list(scene.monitors) == ["wall", "crown", "wall.free_field", "crown.free_field"]
+    for name, place in (("wall", [0.25, 1.25]), ("crown", [2.25, 2.75])):
+        node, twin = scene.monitors[name], scene.monitors[f"{name}.free_field"]
+        assert scene.assembly.positions[node].tolist() == place
+        assert twin == scene.seam.twin[node] < scene.seam.count
+        assert scene.assembly.positions[twin, 1] == place[1]
+
+
+@pytest.mark.parametrize("pattern", PACKINGS)
+def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str) -> None:
+    width, height = PACKINGS[pattern]["size"]
+
+    def hollow(left: float, right: float) -> DiskScene:
+        corners = [left, 0.4 * height, right, 0.6 * height]
+        return build(ground(pattern, hole=[{"name": "niche", "type": "rectangle", "corners": corners}]))
+
+    # between the sides: no disk that is cut loose, and none that a contact ties to the outside, is taken
+    scene = hollow(0.3 * width, 0.7 * width)
+    whole = build(ground(pattern))
+    assert scene.count < whole.count
+    assert np.array_equal(scene.seam.neighbour, whole.seam.neighbour)
+    for side, left, right in (("left", -1.0, 0.1 * width), ("right", 0.9 * width, width + 1.0)):
+        with pytest.raises(CaseError, match=rf"hole\[1, niche\]: reaches boundary.{side}, where the free field has no"):
+            hollow(left, right)
+
+
+BOX: Tables = GROUND | {
+    "ground": {"size": [40.0, 30.0]},
+    "packing": {
+        "pattern": "B",
+        "size": [12.0, 12.0],
+        "origin": [14.0, 6.0],
+        "brick": [6.0, 6.0],
+        "radius": 0.5,
+        "radius_ratio": 1.5,
+    },
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+    "outside": {"element": 6.0},
+}
+WAVE = {"boundary.bottom.wave_s": "w"}
+WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
+
+
+def case(**changes) -> Case:
+    return small(BOX, changes=changes)
+
+
+def scene(*changes: dict) -> DiskScene:
+    return build(case(**{key: value for each in changes for key, value in each.items()}))
+
+
+@pytest.fixture(scope="module")
+def shaken() -> DiskScene:
+    return scene(WAVE)
+
+
+def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) -> None:
+    mesh = shaken.outside.body.mesh
+    offset = shaken.ground.brick.mass_offset
+    assert box_of(shaken.assembly.part(slice(shaken.seam.count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
+    assert shaken.outside.box == (14.0, 6.0, 26.0, 18.0)
+    surface = 30.0 + offset[1]
+    assert mesh.positions[:, 1].max() == pytest.approx(surface, abs=0.5)  # less the packing's skin
+    assert mesh.positions[:, 1].min() == pytest.approx(6.0 + offset[1] - 4 * 6.0, abs=1e-9)
+    assert (shaken.foot.box[1], shaken.foot.sides) == (0.0, ("bottom",))
+
+
+def test_a_hole_that_reaches_a_side_is_refused() -> None:
+    hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": "after"}
+    with pytest.raises(CaseError, match=r"^hole\[1, shaft\]: reaches boundary.top, where the continuum has no hole"):
+        scene({"hole": [hole]}, WEIGHT)
+
+
+def test_between_box_and_surface_there_is_room_for_an_element() -> None:
+    lattice = {"packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0], "origin": [14.0, 14.0]}}
+    with pytest.raises(CaseError) as caught:
+        scene(lattice)
+    (line,) = caught.value.problems
+    assert line == (
+        "packing.origin: the disks end 4 m below the surface of the ground; they must reach it, or end at least 5 m "
+        "below, the smallest useful element"
+    )
+    up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    lattice["packing"]["origin"] = [14.0, 18.0]
+    assert scene(lattice, {"boundary": up_to_it}).outside.count > 0

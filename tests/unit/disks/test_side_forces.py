@@ -7,7 +7,6 @@ from disk_systems import BODY, TWO_BRICKS
 from dembound.disks.rest.static_scene import Tractions
 from dembound.disks.scene import build
 from dembound.disks.side_forces import side_forces
-from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.motion.sides import _bearers
 
 HALF = {"boundary": {side: {"type": "viscous", "half_mass": True} for side in ("bottom", "right")}}
@@ -56,20 +55,3 @@ def test_a_side_is_recorded_with_the_stress_times_its_length(bar, pattern: str, 
         expected = outward * edge.length * np.array([[xx, xy], [xy, yy]])[edge.axis]
         # the solve for correctors, and sums of a hundred forces
         np.testing.assert_allclose((share * force[:2, node]).sum(axis=1), expected, rtol=0.0, atol=1e-9 * 3e6 * 8.0)
-
-
-def test_a_locked_in_stress_is_a_part_of_the_one_given(bar) -> None:
-    """Under the stress as built the forces are those that contacts have without any displacement."""
-    law = {"material.law": "linearpbond", "material.locked_in": 3e6, "material.fric": 0.5, "static": {}}
-    scene = build(bar({**BODY, "packing": TWO_BRICKS, **law}))
-    contacts = contact_lists(scene)["body"]
-    contacts.push(np.zeros((3, scene.count)))
-    force = np.zeros((3, scene.count))
-    contacts.add_forces(force)
-    brick = scene.ground.brick
-    as_built = brick.stress * 3e6 / -(0.5 * brick.stress[:2].sum())
-    assert np.abs(force).max() > 1e5
-    for each in side_forces(scene).values():
-        force[:, each.node] += each.under(as_built)
-    # the brick is at rest to its own ratio
-    assert np.abs(force[:2]).max() < 20.0 * max(brick.residual_ratio, 1e-12) * 3e6

@@ -15,18 +15,7 @@ from dembound.motion import stability
 from dembound.motion.stability import LEAST
 
 MASS = 2500.0 * 0.5**2
-K = 2500.0 * 1000.0**2
-"""Normal stiffness of a lattice contact, N/m; with μ = 0 its shear stiffness is half of it."""
-
 ONLY_X = {"motion.held": ["y", "rotation"]}
-
-
-def test_prescribed_motions_do_not_vibrate(bar) -> None:
-    left = {"type": "velocity", "wave_p": "pulse"}
-    scene = build(bar({**ONLY_X, "packing.size": [1.0, 0.5], "monitor": [], "boundary.left": left}))
-
-    # one disk on one spring
-    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(K / MASS), rel=1e-12)
 
 
 def test_springs_of_supports_count(bar) -> None:
@@ -48,10 +37,6 @@ def test_the_operator_beside_a_continuum_is_symmetric_where_disks_are_held() -> 
 
     # holding disks never makes a limit shorter
     assert step_limit(scene) >= step_limit(free)
-
-
-def test_the_same_scene_has_the_same_limit(bar) -> None:
-    assert step_limit(build(bar())) == step_limit(build(bar()))
 
 
 def test_a_limit_that_is_not_found_in_time_is_an_error(bar, monkeypatch) -> None:
@@ -77,14 +62,6 @@ def test_an_automatic_step_is_the_share_of_the_limit_asked_for_and_a_given_one_i
     (problem,) = caught.value.problems
     assert problem.startswith("run.time_step: ")
     assert f"{limit:.6g}" in problem
-
-
-def test_a_scene_in_which_nothing_vibrates_needs_a_step_of_its_own(bar) -> None:
-    still = {"boundary.left": {"type": "fixed"}, "packing.size": [0.5, 0.5], "monitor": []}
-    with pytest.raises(CaseError, match=r"run\.time_step: .*give a step in s"):
-        choose_step(given(bar, "auto", **still))
-
-    assert choose_step(given(bar, 1e-3, **still)) == (1e-3, np.inf)
 
 
 @pytest.mark.parametrize(("fric", "most"), [(0.0, 6.0), (0.5, 24.0)])

@@ -7,8 +7,8 @@ from small_cases import PULLED, SURROUNDED, small
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import step_limit
-from dembound.disks.trials import PARTICLES, UNLOADED
-from dembound.kinds import kind_of, with_changes
+from dembound.disks.trials import PARTICLES
+from dembound.kinds import kind_of
 
 
 def trials(case, **options):
@@ -42,17 +42,6 @@ def test_a_large_scene_is_a_reduced_copy_with_the_same_sides(bar) -> None:
     assert width / height == pytest.approx(10.0, rel=0.3)
 
 
-def test_a_law_with_a_history_is_measured_beside_its_linear_one(bar) -> None:
-    found, words = trials(bar({"material.law": "linearpbond"}))
-
-    assert [(trial.name, trial.is_linear) for trial in found] == [("elastic", True), ("linearpbond, unloaded", False)]
-    assert UNLOADED in words
-    pressed, words = trials(bar({"material.law": "linearpbond", "material.contact_share": 0.0}))  # nothing opens
-    assert (pressed[1].name, UNLOADED in words) == ("linearpbond", False)
-    assert found[1].limit == pytest.approx(np.sqrt(0.75 / 1.05) * found[0].limit, rel=1e-3)
-    assert any("no bond breaks" in word for word in words)
-
-
 def test_a_bar_is_measured_at_every_stage_of_its_method() -> None:
     case = small(PULLED, changes={"boundary.right": {"type": "viscous"}})
     found, words = trials(case)
@@ -80,30 +69,6 @@ def test_noise_has_the_same_expected_energy_in_all_components(bar) -> None:
     assert not noise[scene.supports.component[held], scene.supports.node[held]].any()
 
 
-def test_springs_of_a_copy_are_the_stiffest_of_the_whole_side(bar) -> None:
-    source, distance = [150.0, 23.0], np.hypot(50.0, 3.0)
-    springs = {"boundary.right": {"type": "viscoelastic", "source": source}, "packing.size": [200.0, 20.0]}
-    (reduced,), words = trials(bar(springs))
-    (whole,), _ = trials(bar(springs), full=True)
-    stiffness = [trial.scene.supports.stiffness for trial in (reduced, whole)]
-
-    assert any("source" in word for word in words)
-    assert reduced.scene.case.boundary["right"].distance == pytest.approx(distance, rel=1e-12)
-    # disks of the side are within its width of half a diameter of it, 0.25 m of 50 m
-    assert stiffness[0].max() == pytest.approx(stiffness[1].max(), rel=0.01)
-    assert len(np.unique(np.round(stiffness[0] / stiffness[0].max(), 9))) < len(np.unique(stiffness[1]))
-
-
-def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> None:
-    """As the ledger of this law has the energies of all parts, noise is then put into the body."""
-    linear = small(SURROUNDED, "surrounded")
-    (trial,), words = trials(linear)
-    assert words[0] == "12 m × 6 m, 72 disks and 741 nodes of a continuum"
-    assert list(trial.parts) == ["body", "continuum"]
-    full = with_changes(linear, {"material.law": "linearpbond"})
-    assert [list(each.parts) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
-
-
 @pytest.mark.parametrize(
     "moves",
     [
@@ -126,12 +91,3 @@ def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, ob
     assert not trial.scene.steady_load.any()
     assert len(trial.scene.supports.drive) == 0
     assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)
-
-
-def test_a_wave_at_an_angle_is_left_out() -> None:
-    wave = {"wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}}
-    case = small(SURROUNDED | wave | {"incident": {"type": "p", "angle": 20.0, "wave": "pulse"}})
-    found, words = trials(case)
-    assert found[0].scene.ground_waves is None
-    assert found[0].limit == pytest.approx(step_limit(build(case)), rel=1e-6)
-    assert "no loads and waves" in words

@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import quad
 
 from dembound.exact import Lattice, cells_per_wavelength, courant_limit
-from dembound.exact.dispersion import usual_shares
 
 HORIZONS = [1, 2, 3, 8]
 
@@ -33,23 +32,6 @@ def test_frequency_solves_the_printed_equation(horizon: int, share: float) -> No
     )
 
 
-def test_units_are_those_of_spacing_step_and_speed() -> None:
-    small = Lattice(3, spacing=0.005, time_step=1e-6, wave_speed=2763.0)
-    phase = np.array([0.0, 0.3, 2.0])
-    plain = lattice(3, small.courant)
-    assert small.courant == pytest.approx(0.5526, rel=1e-15)
-    np.testing.assert_allclose(small.frequency(phase / 0.005), plain.frequency(phase) * 2763.0 / 0.005, rtol=1e-14)
-    np.testing.assert_allclose(small.group_velocity(phase / 0.005), plain.group_velocity(phase) * 2763.0, rtol=1e-14)
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-def test_nothing_cancels_in_very_long_waves(horizon: int) -> None:
-    phase = np.array([0.0, 1e-12, 1e-8]) / horizon  # there L's cosines differ from 1 by rounding only
-    # dispersion itself is (mθ)²/24 < 1e-17
-    np.testing.assert_allclose(lattice(horizon, 0.5).frequency(phase), phase, rtol=1e-14)
-    np.testing.assert_allclose(lattice(horizon, 0.5).group_velocity(phase), 1.0, rtol=1e-14)
-
-
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_group_velocity_is_the_slope_of_the_frequency(horizon: int) -> None:
     speeds = lattice(horizon, 0.9 * courant_limit(horizon))
@@ -70,19 +52,6 @@ def test_shortest_wave_is_the_first_to_grow(horizon: int) -> None:
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)
-def test_waves_that_grow_have_no_frequency(horizon: int) -> None:
-    limit = courant_limit(horizon)
-    at, above = lattice(horizon, limit), lattice(horizon, limit * (1.0 + 1e-9))
-    assert at.stable
-    # sin(ωΔt/2) is 1 within a few roundings, its angle within their square root
-    assert at.frequency(np.pi) * limit == pytest.approx(np.pi, rel=1e-7)
-    assert not above.stable
-    for speeds in (above.frequency, above.phase_velocity, above.group_velocity):
-        assert np.isnan(speeds(np.pi))
-        assert np.isfinite(speeds(0.1))
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
 @pytest.mark.parametrize(("of", "share"), [("phase", 0.0), ("phase", 0.9), ("group", 0.5)])
 def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(horizon: int, share: float, of) -> None:
     courant = share * courant_limit(horizon)
@@ -94,32 +63,6 @@ def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(hori
     assert np.all(np.abs(speed(np.linspace(0.0, 0.999 * phase, 1000)) - 1.0) < 0.01)
     assert abs(float(speed(1.001 * phase)) - 1.0) > 0.01
     assert cells_per_wavelength(1, 1.0, of=of) == 2.0  # there is no error at all
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
-    shares = usual_shares(horizon)
-    courant = 0.9 * courant_limit(horizon)
-    usual, given = lattice(horizon, courant), Lattice(horizon, 1.0, courant, 1.0, shares)
-    phase = np.linspace(0.0, 3.1, 200)
-
-    # sums of m terms of order 1; of the group velocity the closed form vanishes where the sum has its rounding
-    np.testing.assert_allclose(given.frequency(phase), usual.frequency(phase), rtol=1e-13 * horizon)
-    np.testing.assert_allclose(given.group_velocity(phase), usual.group_velocity(phase), atol=1e-13 * horizon)
-    assert given.courant_limit == pytest.approx(courant_limit(horizon), rel=1e-12)
-    assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(
-        cells_per_wavelength(horizon, courant), rel=1e-10
-    )
-
-
-def test_bonds_of_two_spacings_alone_are_a_bar_of_twice_the_spacing() -> None:
-    double, single = Lattice(2, 1.0, 1.5, 1.0, (0.0, 1.0)), Lattice(1, 2.0, 1.5, 1.0)
-    wavenumber = np.linspace(0.0, 1.5, 50)
-
-    # its waves of four spacings are the first to grow, not those of two
-    assert double.courant_limit == pytest.approx(2.0, rel=1e-12)
-    np.testing.assert_allclose(double.frequency(wavenumber), single.frequency(wavenumber), rtol=1e-14)
-    np.testing.assert_allclose(double.group_velocity(wavenumber), single.group_velocity(wavenumber), rtol=1e-12)
 
 
 def test_what_makes_no_sense_is_refused() -> None:

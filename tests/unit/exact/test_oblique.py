@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from ground_motions import GENERAL
 
-from dembound.continuum.medium import Medium, incident_wave, reflected_waves, waves_with
+from dembound.continuum.medium import Medium, incident_wave, waves_with
 from dembound.disks.surroundings.oblique_layers import bed_of
 from dembound.exact.column import Column, Layer
 from dembound.exact.oblique import Bed, amplitudes
@@ -21,17 +21,6 @@ def bed(medium: Medium, sx: float, thickness: float) -> Bed:
 def flux(each: Bed, amplitude: np.ndarray) -> np.ndarray:
     """Energy (k, 4) per |ġ|² that the waves carry upwards."""
     return (np.abs(amplitude) ** 2) * np.sum(each.traction * each.motion, axis=0)
-
-
-@pytest.mark.parametrize("kind", ["sv", "p"])
-def test_a_surface_alone_reflects_as_plane_waves(kind: str) -> None:
-    incident = incident_wave(GENERAL, kind, 25.0)
-    one = bed(GENERAL, incident.slowness[0], 1.0)
-    rising = np.linalg.solve(one.motion[:, :2], incident.motion)
-    (found,) = amplitudes([one], rising, FREQUENCIES)
-    for wave in reflected_waves(GENERAL, incident, 0.0):
-        own = 2 + int(np.argmin(np.abs(one.slowness[2:] - wave.slowness[1])))
-        np.testing.assert_allclose(found[:, own], one.motion[:, own] @ wave.motion, atol=1e-12)
 
 
 @pytest.mark.parametrize("mass", [None, 0.0, 800.0], ids=["goes_on", "free", "with_mass"])

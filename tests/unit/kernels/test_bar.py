@@ -7,7 +7,7 @@ import pytest
 from plain_kernels import stepped
 
 from dembound.kernels import bar, tables
-from dembound.kernels.common import DONE, TRIGGERED
+from dembound.kernels.common import DONE
 from dembound.kernels.loop import advance
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
@@ -186,24 +186,6 @@ def test_bonds_break_in_the_step_that_reaches_their_limit() -> None:
     assert np.diff(run.u[0]).max() < 1e-6
     assert np.array_equal(run.bonds.bond_broken[:2], broken[:2])
     assert np.array_equal(run.bonds.bond[:2] > 0.0, whole[:2])
-
-
-@pytest.mark.parametrize("plain", [True, False])
-def test_springs_that_ask_stop_the_kernel_before_the_step(plain: bool) -> None:
-    rod = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
-    u, v = np.zeros((2, 3, COUNT))
-    v[0] = 0.02 * np.arange(COUNT)
-    run = Run(Bonds(rod, 3, trigger_ratio=0.1), u, v)
-    if not plain:
-        run.arrays = all_mixed(run.arrays)
-    done, why = run.advance()
-
-    # 0.002 m a step against 0.1 · 0.5 · 0.5 m, but where the ends' waves have come
-    assert (done, why) == (13, TRIGGERED)
-    assert run.bonds.triggered(run.u[0]).size > 0
-    assert np.all(run.bonds.spring_broken == -1)
-    # it asks again at once
-    assert run.advance(10, done) == (0, TRIGGERED)
 
 
 def test_force_through_a_plane_is_what_pulls_at_either_side(layout) -> None:

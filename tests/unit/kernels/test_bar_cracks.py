@@ -114,16 +114,6 @@ def test_unloading_is_a_line_to_the_origin_and_pressure_meets_whole_bonds() -> N
     assert run.bonds.spring_broken[13] == run.number - 1
 
 
-def test_of_two_that_reach_the_limit_equally_one_begins() -> None:
-    run = Driven(Bonds(rod(), 0))
-    both = 1.1 * STRETCH * SPACING * ((np.arange(COUNT) > 13) + 1.0 * (np.arange(COUNT) > 14))
-    run.to(0.5 * both)
-    run.to(both)
-    assert run.bonds.opening["first"].tolist() == [13]
-    run.to(1.1 * both)  # not unloaded by the first one
-    assert run.bonds.opening["first"].tolist() == [13, 14]
-
-
 @pytest.mark.parametrize(("rate", "gain"), [(0.5, 1.0), (10.0, 1.0 + 0.5 * np.log10(5.0)), (99.0, 1.5)])
 def test_strength_follows_the_strain_rate(rate: float, gain: float) -> None:
     """Steps of 1 s at so small a stretch that rates are prescribed by the units: a stretch of rate·10⁻⁵ a step."""

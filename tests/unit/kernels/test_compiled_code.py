@@ -1,9 +1,6 @@
 """Storage of compiled code: never of other sources than the present ones."""
 
-import logging
-import os
 import shutil
-import time
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
@@ -33,38 +30,3 @@ def test_laws_of_other_packages_count_as_sources(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(kernels, "entry_points", lambda group: [each for each in entries if each.group == group])
 
     assert kernels.registered_laws() == [tmp_path / "sandy" / "law.py"]
-
-
-def test_code_that_has_not_been_used_is_removed(tmp_path) -> None:
-    names = {"now": 16 * "a", "recent": 16 * "b", "old": 16 * "c", "strange": 16 * "z", "longer": 17 * "d"}
-    for name in names.values():
-        (tmp_path / name / "inner").mkdir(parents=True)
-        before = time.time() - 100.0
-        os.utime(tmp_path / name, (before, before))
-    os.utime(tmp_path / names["recent"])
-
-    kernels.prune(tmp_path, names["now"], age=50.0)
-    # what is in use is marked as used; what is not named by a digest is not ours
-    assert {path.name for path in tmp_path.iterdir()} == set(names.values()) - {names["old"]}
-    assert time.time() - (tmp_path / names["now"]).stat().st_mtime < 50.0
-
-    kernels.prune(tmp_path / "absent", names["now"])
-
-
-def test_compiled_code_has_a_folder_where_neither_package_nor_home_can_be_written(
-    tmp_path, monkeypatch, caplog
-) -> None:
-    (tmp_path / "file").touch()
-    package, private = tmp_path / "file" / "__pycache__", tmp_path / "private"
-    monkeypatch.setattr(kernels, "private_folder", lambda: private)
-    monkeypatch.setattr(kernels, "user_cache", lambda: tmp_path / "home")
-    monkeypatch.setattr(os, "environ", dict(os.environ))
-    monkeypatch.setattr(kernels.numba.config, "reload_config", lambda: None)
-    caplog.set_level(logging.INFO)
-    assert kernels.kept_in("", tmp_path / "package") == tmp_path / "package"
-    assert kernels.kept_in("", package) == tmp_path / "home" / "compiled"
-    assert caplog.messages == []
-    monkeypatch.setattr(kernels, "user_cache", lambda: None)
-    assert kernels.kept_in("", package) == private
-    assert str(private) in caplog.text
-    assert os.environ["NUMBA_CACHE_DIR"] == str(private)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from moving_pairs import PAIRS, PARTICLES, STEP, UNBREAKABLE, two
-from plain_kernels import PlainPairs, alone, one_pair, random_pairs
+from plain_kernels import PlainPairs, one_pair, random_pairs
 
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
 from dembound.kernels.tables import Contacts
-from dembound.laws.elastic import Limits, in_columns
+from dembound.laws.elastic import Limits
 
 
 def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
@@ -51,27 +51,6 @@ def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law() 
     assert tried > 20
 
 
-def test_slack_is_negative_just_where_a_pair_is_outside() -> None:
-    rng = np.random.default_rng(9)
-    pairs = random_pairs(PARTICLES, PAIRS, gap=0.2)
-    law = PlainPairs(pairs, LIMITS)
-    found = []
-    for size in np.repeat([0.03, 0.08, 0.2], 20):
-        u = size * rng.uniform(-1.0, 1.0, (3, PARTICLES))
-        found.append(slack(u, pairs, LIMITS, False) < 0.0)
-        assert found[-1] == (outside(u, pairs, LIMITS, law) > 0.0).any()
-    assert 10 < sum(found) < 50
-
-
-def test_with_columns_of_limits_each_pair_has_those_of_its_type() -> None:
-    rng = np.random.default_rng(10)
-    pairs, columns = random_pairs(PARTICLES, PAIRS, gap=0.2), rng.uniform(0.4, 2.0, (PAIRS, 4))
-    u = 0.03 * rng.uniform(-1.0, 1.0, (3, PARTICLES))
-    each = [slack(u, alone(pairs, c), Limits(*columns[c].tolist(), REFERENCE), False) for c in range(PAIRS)]
-
-    assert slack(u, pairs, in_columns(columns, REFERENCE), False) == min(each)
-
-
 def test_the_slack_of_one_pair_by_hand() -> None:
     limits = UNBREAKABLE._replace(geometry=BONDED)
     torn, shorn = {"friction": 100.0, "tension": 0.3}, {"friction": 100.0, "cohesion": 0.4, "tan_fa": 0.6}
@@ -84,23 +63,3 @@ def test_the_slack_of_one_pair_by_hand() -> None:
         (two(-0.1, -0.3), one_pair(INTACT, overlap=1.0), shorn, (0.4 + 0.09 - 0.15) / 1.4),
     ):
         assert slack(moved, pair, limits._replace(**changes), False) == pytest.approx(room, rel=1e-12)
-
-
-def test_without_a_stiffness_of_contacts_only_bonds_have_limits() -> None:
-    limits = UNBREAKABLE._replace(geometry=BONDED)
-    for moved, overlap in ((two(0.2), 0.1), (two(-0.2), -0.1), (two(0.0, 0.5), 0.1)):  # opens, closes, slides
-        pair = one_pair(INTACT, overlap=overlap)
-        assert slack(moved, pair, limits, False) < 0.0
-        pair.constants[:, 5:7] = 0.0
-        assert slack(moved, pair, limits, False) == np.inf
-    torn = limits._replace(tension=0.3)
-    assert slack(two(0.04, turn=-0.08), pair, torn, False) == pytest.approx((0.3 - 0.06 - 0.06) / 3.0, rel=1e-12)
-
-
-def test_a_pair_that_turns_leaves_small_displacements() -> None:
-    pair = one_pair(overlap=10.0)
-    limits = UNBREAKABLE._replace(friction=100.0)
-    distance = pair.constants[0, 2]
-    assert slack(two(0.0, 0.004 * distance), pair, limits, False) == pytest.approx(0.006 * distance, rel=1e-9)
-    assert slack(two(0.0, -0.011 * distance), pair, limits, False) < 0.0
-    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED), False) > 0.0

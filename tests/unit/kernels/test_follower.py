@@ -107,18 +107,3 @@ def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
     assert turn_forces(table, DATUM + np.array([[0.375], [-1.25], [0.5]]), v, load, STEP) == 0.0
     assert np.array_equal(load[:2, NODE], table.steady)
     assert not table.extra.any()
-
-
-def test_what_a_small_turn_adds_along_a_force_keeps_its_digits(followers) -> None:
-    table, places = followers()
-    angle = 1e-5
-    turn_forces(table, DATUM + turned(places, angle), shaken(), np.zeros((3, PARTICLES)), STEP)
-
-    one_side = SIDE[1] < 0
-    force = table.force[0][:, one_side]
-    along = np.sum(table.extra[:, one_side] * force, axis=0)
-    # −½θ² F²; of the products θ F_x F_y, which cancel, rounding leaves some ε θ, far less than the ε of a cosine
-    rounding = 10.0 * np.finfo(float).eps * angle
-    expected = -2.0 * np.sin(0.5 * angle) ** 2 * np.sum(force**2, axis=0)
-    np.testing.assert_allclose(along, expected, rtol=0.0, atol=rounding)
-    assert np.abs(expected).min() > 1e3 * rounding

@@ -1,7 +1,6 @@
 """Constants of pairs by hand, and beside those of the elastic law."""
 
 import numpy as np
-import pytest
 
 from dembound.casefile.types import LAWS
 from dembound.laws import Moduli
@@ -32,21 +31,6 @@ def test_overlapping_disks_just_touch_and_push_by_their_part_of_a_locked_in_stre
     ahead = np.array([[0.6 * (1.0 + 1e-12), 0.0]])  # touches but for rounding
     (row,) = LAWS["linearpbond"].pair_constants(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
     assert row[3] == row[2]
-
-
-@pytest.mark.parametrize(("gaps_close", "stiffness"), [(True, 6e9), (False, 0.0)])
-def test_gaps_close_or_not(gaps_close: bool, stiffness: float) -> None:
-    normal, shear = constants(gaps_close=gaps_close)[:, 5:7].T
-
-    assert normal.tolist() == [6e9, 6e9, stiffness]
-    assert shear.tolist() == [3e9, 3e9, stiffness / 2.0]
-
-
-def test_pairs_without_bonds_have_no_bond_stiffness() -> None:
-    bonded, loose = constants(), constants(bonded=False)
-
-    assert not loose[:, 7:10].any()
-    assert np.array_equal(np.delete(loose, [7, 8, 9], axis=1), np.delete(bonded, [7, 8, 9], axis=1))
 
 
 def test_at_rest_a_pair_is_as_stiff_as_under_the_elastic_law() -> None:

@@ -1,16 +1,10 @@
 """Seconds are counted once, for the innermost section."""
 
 import time
-from itertools import count
 
-import numba
 import pytest
-from numba.core import event
 
 from dembound.motion.clock import Clock
-
-COMPILING = "numba:compiler_lock"
-"""The event between whose start and end numba compiles."""
 
 
 @pytest.fixture
@@ -39,38 +33,3 @@ def test_a_section_within_another_does_not_count_for_that_one(ticking) -> None:
         ticking(32.0)
 
     assert clock.seconds == {"run": 37.0, "draw": 10.0}
-
-
-def test_what_is_compiled_within_is_a_section_of_its_own(ticking) -> None:
-    clock = Clock()
-    with clock.with_compiling(), clock.of("run"):
-        ticking(1.0)
-        event.start_event(COMPILING)
-        ticking(2.0)
-        event.start_event(COMPILING)  # of a function that the first one calls
-        ticking(4.0)
-        event.end_event(COMPILING)
-        event.end_event(COMPILING)
-        ticking(8.0)
-
-    assert clock.seconds == {"run": 9.0, "compile": 6.0}
-
-
-def test_numba_reports_what_it_compiles_and_only_once() -> None:
-    @numba.njit
-    def doubled(value):
-        return 2.0 * value
-
-    clock = Clock(now=count().__next__)  # each look at the clock is a second later
-    with clock.with_compiling():
-        pass
-    doubled(1)  # of integers, and outside
-    assert not clock.seconds
-    with clock.with_compiling(), clock.of("run"):
-        doubled(1.0)
-    assert clock.seconds["compile"] > 0.0
-    # what it has been compiled for it is not compiled for again
-    before = clock.seconds["compile"]
-    with clock.with_compiling(), clock.of("run"):
-        doubled(2.0)
-    assert clock.seconds["compile"] == before

@@ -1,7 +1,6 @@
 """The ledger, entry by entry, where each energy is known by hand."""
 
 from collections.abc import Callable
-from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -12,11 +11,9 @@ from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
-from dembound.disks.stepping.scene_parts import Start, contact_lists
-from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
 from dembound.kinds import loads
-from dembound.motion.energy import GAIN, OPPOSED, Entry, Ledger, opposed
+from dembound.motion.energy import GAIN, OPPOSED, Ledger, opposed
 from dembound.motion.simulation import Simulation
 from dembound.motion.state import State
 from dembound.motion.trackers import NEVER, Tracker
@@ -59,123 +56,6 @@ def test_a_falling_disk_turns_the_work_of_its_weight_into_motion(bar, damp: floa
         assert entry.load == pytest.approx(0.5 * MASS * (10.0 * 19 * STEP) ** 2, rel=1e-12)
         assert entry.kinetic == pytest.approx(entry.load, rel=1e-12)
         assert entry.stepping == pytest.approx(ledger.entries[0].stepping, rel=1e-12)
-
-
-@pytest.mark.parametrize(("came", "counts"), [(9e-8, False), (1.1e-7, True)])
-def test_what_is_rounding_of_the_stored_energy_is_not_supplied(bar, came: float, counts: bool) -> None:
-    """With 1 MJ stored at the start 1e-13 is 1e-7 J; it may come as motion, from outside or by loads."""
-    for where in range(3):
-        ledger = booked(simulated(bar))
-        ledger._first = 8e5, 2e5
-        ledger._came, outside, load = (came if place == where else 0.0 for place in range(3))
-        assert ledger._supplied(outside, load) == (came if counts else 0.0)
-
-
-@pytest.mark.parametrize(
-    ("interval", "last", "steps"),
-    [
-        (10, NEVER, [0, 10, 20]),
-        (10, 27, [0, 10, 20, 27]),
-        (40, 4, [0, 4]),
-        (1, NEVER, list(range(29))),
-    ],
-)
-def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: list[int]) -> None:
-    each, other = simulated(bar), simulated(bar)
-    every, some = booked(each), booked(other, interval, last)
-    assert some.columns.shape == (0, len(fields(Entry)))
-    record = each.advance(29)
-    records = [other.advance(part) for part in (4, 9, 12, 4)]  # wherever the run is cut
-
-    assert np.array_equal(some.columns, every.columns[steps])
-    assert [entry.time for entry in some.entries] == [step * other.time_step for step in steps]
-    assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
-    assert np.array_equal(other.state.displacement, each.state.displacement)
-    assert np.array_equal(np.concatenate(records), record)
-
-
-BRITTLE = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e6}
-
-
-def test_what_was_locked_in_is_no_energy_gained(bar) -> None:
-    dense = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-    changes = {"packing": dense, "monitor": [], "wave.pulse.start": 1.0, "motion.held": []}
-    simulation = simulated(bar, **changes, **BRITTLE)
-    ledger = booked(simulation)
-    simulation.advance(3)
-
-    assert len(ledger.entries) == 3
-    assert not ledger.columns[:, 1:].any()
-
-
-def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
-    scene = build_bar(spalling({"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}))
-    simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
-    ledger = booked(simulation)
-    simulation.advance(11)
-    place = simulation.state.displacement[0].copy()
-    simulation.advance(1)
-    entry, bonds = ledger.entries[-1], simulation.system.parts[0].bonds
-
-    stretched = [place[p:] - place[:-p] for p in (1, 2, 3)]
-    assert entry.contact == pytest.approx(0.5 * np.sum(bonds.spring * stretched[0] ** 2), rel=1e-12)
-    of_bonds = sum(0.5 * np.sum(bonds.bond[p, : 40 - p] * each**2) for p, each in enumerate(stretched))
-    assert entry.bond == pytest.approx(of_bonds, rel=1e-12)
-    # twelve steps of sums over 41 nodes and 120 bonds
-    assert abs(entry.error) < 12 * 41 * np.finfo(float).eps * entry.outside
-
-
-def at_rest(bar, **changes: object) -> Simulation:
-    """A body as built, taken as settled."""
-    scene = build(bar(changes))
-    contacts = contact_lists(scene) if scene.has_history else {}
-    start = Start(np.zeros((3, scene.count)), contacts)
-    step, _ = choose_step(scene)
-    return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
-
-
-def test_what_balances_a_body_works_against_its_weight(bar) -> None:
-    # what settled before lets nothing fall: all disks drift along, up or down
-    simulation = at_rest(bar, **{**LONE, "packing.size": [1.0, 1.0]}, **FALL)
-    ledger = booked(simulation)
-    simulation.state.v[:2, simulation.state.layout.slot] = [[1.0], [-3.0]]
-    simulation.advance(10)
-
-    assert len(ledger.entries) == 10
-    for number, entry in enumerate(ledger.entries):
-        fallen = 3.0 * number * simulation.time_step
-        # four disks; sums of ten steps, each rounded
-        assert entry.load == pytest.approx(4.0 * MASS * 10.0 * fallen, rel=1e-13)
-        assert entry.balance == pytest.approx(-4.0 * MASS * 10.0 * fallen, rel=1e-13)
-        assert entry.kinetic == pytest.approx(0.5 * 4.0 * MASS * 10.0, rel=1e-13)
-        # what the drift has at the start is not gained
-        assert entry.error == pytest.approx(0.0, abs=1e-13 * entry.kinetic)
-
-
-PACKED = {
-    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
-    "material.law": "linearpbond",
-    "material.locked_in": 10e6,
-    "material.fric": 0.5,
-    "static": {},
-    "motion.held": [],
-    "boundary": {},
-    "wave": {},
-    "monitor": [],
-}
-"""A body of which constant forces keep a pressure of 10 MPa."""
-
-
-def rigid(simulation: Simulation) -> np.ndarray:
-    """Velocities (3, n) of a body that turns about its centre at 1 rad/s."""
-    scene = simulation.scene
-    x, y = (scene.positions - np.average(scene.positions, axis=0, weights=scene.mass)).T
-    return np.stack([-y, x, np.ones(scene.count)])
-
-
-def scene_inertia(simulation: Simulation) -> np.ndarray:
-    """Mass, mass and moment of inertia (3, n)."""
-    return np.stack([simulation.scene.mass, simulation.scene.mass, simulation.scene.inertia])
 
 
 class Push(Tracker):
@@ -233,19 +113,6 @@ def test_a_pulse_that_comes_and_goes_between_two_entries_was_supplied(interval: 
     assert max(abs(entry.error) for entry in ledger.entries) < 1e-12 * pulse
 
 
-def test_a_gain_is_compared_with_what_came_and_went() -> None:
-    """A wave that has left does not hide a gain of the size of what it brought."""
-    scene = build_bar(loads(tomli_w.dumps(PASSING)))
-    simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
-    ledger = booked(simulation, 300)
-    simulation.advance(302)
-    came = ledger.entries[-1].supplied
-    speed = np.sqrt(2.0 * 1.1 * GAIN * came / scene.mass.sum())
-    simulation.track(Push(590, lambda state: state.velocity + speed * np.array([[1.0], [0.0], [0.0]])))
-    with pytest.raises(RunError, match=f"had supplied {came:.3g} J at most"):
-        simulation.advance(302)
-
-
 def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:
     """Of v ~ t² a step Δt and 0.01 Δt after its beginning v⁺/4v⁻ is 1.01²/(4 · 0.01²), and 2.01²/(4 · 1.01²) later."""
     push = {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.01, "start": 2.49e-4}}
@@ -258,28 +125,3 @@ def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:
     assert shares[3] == pytest.approx(2550.0, rel=0.01)
     assert shares[3] > OPPOSED
     assert max(shares[:3] + shares[4:]) < 1.0
-
-
-@pytest.mark.parametrize("law", [{}, {"material.elastic_start": False}], ids=["elastic", "linearpbond"])
-def test_rounding_is_no_gain_where_nothing_was_put_in(bar, law: dict) -> None:
-    simulation = at_rest(bar, **PACKED, **law)
-    ledger = booked(simulation)
-    simulation.state.velocity = 1e-12 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, simulation.scene.count))
-    first = np.sum(0.5 * scene_inertia(simulation) * simulation.state.velocity**2)
-    simulation.advance(200)
-
-    # it moves, and sums over contacts that hold 1e4 J round by more than all it was given
-    assert max(abs(entry.error - ledger.entries[0].error) for entry in ledger.entries) > GAIN * first
-
-
-@pytest.mark.parametrize("rate", [1.0, 0.01])
-def test_books_of_a_freely_turning_body_stay_closed_where_the_law_changes(bar, rate: float) -> None:
-    simulation = at_rest(bar, **PACKED)
-    simulation.state.displacement = 0.0099 * rigid(simulation)  # a little before the turn at which the law ends
-    simulation.state.velocity = rate * rigid(simulation)
-    ledger = booked(simulation)
-    while len(simulation.state.laws) == 1 or simulation.state.step < simulation.state.laws[-1][1] + 5:
-        simulation.advance(1)
-    errors = np.array([entry.error for entry in ledger.entries])
-    # some 100 J half a step, or the step of the change, may be wrong by; without them what is left is below 1e-2 J
-    assert np.abs(errors - errors[0]).max() < 0.1

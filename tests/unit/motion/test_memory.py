@@ -17,24 +17,3 @@ def test_more_than_is_free_is_refused_with_both_numbers(monkeypatch) -> None:
     assert refused.value.problems == [said]
     monkeypatch.setattr(memory, "memory_here", lambda: None)  # unknown
     memory.must_fit(1e30, "packing.size", "7 disks")
-
-
-def test_amounts_in_words() -> None:
-    amounts = {
-        4.2e5: "420 kB",
-        12.4e6: "12 MB",
-        999.4e6: "999 MB",
-        999.6e6: "1 GB",
-        25.27e9: "25.3 GB",
-        1.52e12: "1.52 TB",
-    }
-    assert {size: memory.in_words(size) for size in amounts} == amounts
-
-
-def test_drives_are_limited_and_records_are_not() -> None:
-    # 10 monitors, 100 steps, 6 columns, twice; 5 lines of six columns, their drives twice
-    assert (
-        memory.total(memory.recorded(10, 100, 6, 5.0), "record") == 2 * 10 * 100 * 6 * 8 + 5 * 6 * 8 + 2 * 5 * 100 * 8
-    )
-    # of a million lines the drives of 100 steps would be 800 MB
-    assert memory.total(memory.recorded(0, 100, 6, 1e6), "record") == 1e6 * 6 * 8 + 2 * 64e6

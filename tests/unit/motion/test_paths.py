@@ -38,14 +38,6 @@ def test_a_way_over_a_side_is_that_to_the_mirror_image(side: str, plane: float, 
     np.testing.assert_array_equal(at, [place])
 
 
-def test_from_a_source_at_the_side_it_is_the_way_back_alone() -> None:
-    place = np.array([[7.0, 6.0]])
-
-    assert source(LEVEL["left"]).distance_over("right", 10.0, place) == pytest.approx([np.hypot(3.0, 6.0)])
-    assert source(LEVEL["left"]).distance_over("left", -1.0, place) == pytest.approx([np.hypot(8.0, 6.0)])
-    assert source(EVERYWHERE).distance_over("top", 9.0, place) == pytest.approx([3.0])
-
-
 @pytest.mark.parametrize(
     ("side", "box"),
     [
@@ -64,13 +56,6 @@ def test_at_the_plane_needed_the_last_way_is_as_long_as_waves_get(side: str, box
     spare = [(each.distance_over(side, plane, places) - front.reach(0.3 - each.start)).min() for each in sources]
 
     assert min(spare) == pytest.approx(0.0, abs=1e-12)
-
-
-def test_nothing_is_needed_where_nothing_comes() -> None:
-    place = np.array([[7.0, 6.0]])
-
-    assert plane_needed("right", [], place, Front(1.0, 0.1), 5.0) == -np.inf
-    assert plane_needed("left", [source(EVERYWHERE, 5.0)], place, Front(1.0, 0.1), 4.0) == np.inf
 
 
 def test_the_first_arrival_is_that_of_the_nearest_way_and_the_earliest_source() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.support import Edge, SupportBuilder
+from dembound.boundaries.support import Edge
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.sides import _bearers
@@ -30,12 +30,6 @@ def test_a_uniform_stress_is_taken_apart_at_a_corner() -> None:
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[18.0, -3.0], [-2.5, 35.0]], rtol=1e-14)
 
 
-def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
-    force = np.zeros((2, 5))
-    force[:, 2] = [10.0, 20.0]
-    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)
-
-
 @pytest.mark.parametrize("recorded", [0.0, 4.0])
 def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together(recorded: float) -> None:
     """Also where a side is recorded with another force than acts by it: of the 4 N of node 2 by the left side."""
@@ -51,23 +45,6 @@ def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together(recorde
     # where two forces cancel, here along y, what there is belongs to the side along whose normal it is
     expected = [[5.0, 0.0], [6.5 + recorded, 7.25]]
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force, known), expected, rtol=1e-14)
-
-
-def test_two_opposite_sides_with_the_same_nodes_share_equally() -> None:
-    sides = [edge("bottom", [0, 1], [1.0, 1.0]), edge("top", [0, 1], [1.0, 1.0])]
-    np.testing.assert_array_equal(borne(sides, np.array([[4.0, 0.0], [0.0, 2.0]])), [[2.0, 1.0]] * 2)
-
-
-def test_a_component_held_by_two_sides_is_of_that_along_whose_normal_it_is() -> None:
-    for order in (("left", "bottom"), ("bottom", "left")):
-        builder = SupportBuilder()
-        for builder.side in order:
-            for component in range(2):
-                builder.add(np.array([7]), component, prescribed=True)
-        shares = builder.table().shares
-        assert shares is not None
-        found = {int(c): shares.sides[s] for s, c in zip(shares.side, shares.component, strict=True)}
-        assert found == {0: "left", 1: "bottom"}
 
 
 @pytest.mark.parametrize("cuts", [(40,), (1, 2, 8, 9, 23, 24, 40)])

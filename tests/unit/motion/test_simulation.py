@@ -8,13 +8,10 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step, step_limit
-from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
-from dembound.motion.scene import FASTEST
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Every, Tracker
-from dembound.running import plan
+from dembound.motion.trackers import Every
 
 NOBODY = np.zeros(0, dtype=np.int64)
 MASS = 2500.0 * 0.5**2
@@ -54,16 +51,6 @@ def test_supports_and_steady_loads_push_a_disk_by_central_differences(bar, presc
     np.testing.assert_allclose(simulation.state.displacement[:, 0], [u, -55 * 3e-4, 0.0], rtol=1e-13)
 
 
-def test_the_speed_of_a_load_on_a_dashpot_begins_with_half_a_kick(bar) -> None:
-    """M v' = F − C v from rest: means of half steps are (F/C)(1 − rⁿ), r = (1 − x)/(1 + x), x = CΔt/2M, from n = 0."""
-    scene = lone_disk(bar, one_row(damping=0.4 * MASS / STEP))
-    system = DiskSystem(scene, STEP, load=MASS * np.array([[2.0], [0.0], [0.0]]))
-    record = Simulation(scene, STEP, [0], system=system).advance(10)
-
-    final, rate = 2.0 * STEP / 0.4, 0.8 / 1.2
-    np.testing.assert_allclose(record[:, 0, 3], final * (1.0 - rate ** np.arange(10)), rtol=1e-12, atol=1e-16)
-
-
 def test_all_falls_alike_beside_free_fields(bar) -> None:
     """Dashpots between disks and their columns see no relative motion, from the first step on."""
     changes = {"boundary": {side: {"type": "free_field"} for side in ("left", "right")}, "wave": {}, "monitor": []}
@@ -76,21 +63,6 @@ def test_all_falls_alike_beside_free_fields(bar) -> None:
 def simulated(bar, probes: np.ndarray = NOBODY) -> Simulation:
     scene = build(bar())
     return Simulation(scene, choose_step(scene)[0], probes)
-
-
-class Heard(Tracker):
-    """Notes every return of the loop: its step, and the number of rows in the record."""
-
-    name = "heard"
-
-    def __init__(self) -> None:
-        self.seen: list[tuple[int, int]] = []
-
-    def handle(self, simulation: Simulation) -> None:
-        raise AssertionError("it is never due")
-
-    def observe(self, simulation: Simulation, record: np.ndarray) -> None:
-        self.seen.append((simulation.state.step, len(record)))
 
 
 class Noting(Every):
@@ -124,48 +96,6 @@ def test_a_run_goes_on_alike_wherever_it_is_cut_and_seen(bar) -> None:
     assert not whole.state.velocity[1].any()
 
 
-def test_a_run_stops_at_the_ends_of_blocks_and_at_the_steps_that_trackers_have_named(bar) -> None:
-    simulation, heard = simulated(bar), Heard()
-    simulation.track(heard)
-    simulation.run(DiskScene.block + 10)
-    assert heard.seen == [(DiskScene.block, DiskScene.block), (DiskScene.block + 10, 10)]
-
-    simulation, heard, early, late = simulated(bar), Heard(), Noting(7), Noting(5, first=9)
-    simulation.track(heard, early, late)
-    simulation.run(20)
-    assert early.seen == [0, 7, 14]
-    assert late.seen == [9, 14, 19]
-    assert heard.seen == [(7, 7), (9, 2), (14, 5), (19, 5), (20, 1)]
-
-
-def test_a_tracker_may_end_a_run(bar) -> None:
-    class Enough(Noting):
-        def see(self, simulation: Simulation) -> None:
-            simulation.stopped = True
-
-    simulation = simulated(bar)
-    simulation.track(Enough(5, first=5))
-    simulation.run(20)
-
-    assert simulation.state.step == 5
-
-
-def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
-    edges = build(bar()).edges
-    simulation = simulated(bar, edges["right"].nodes)
-    velocities = [simulation.state.velocity[:, simulation.scene.edges["right"].nodes].T]
-    for _ in range(60):
-        simulation.advance(1)
-        velocities.append(simulation.state.velocity[:, simulation.scene.edges["right"].nodes].T)
-    history = np.array(velocities)
-
-    assert np.array_equal(simulation.edge_peaks("right")[..., 0], history.min(axis=0))
-    assert np.array_equal(simulation.edge_peaks("right")[..., 1], history.max(axis=0))
-    # the pulse of 0.5 m/s has gone through by then, and has come to no other side's account
-    assert simulation.edge_peaks("right")[0, 0, 1] > 0.4
-    assert [len(simulation.edge_peaks(side)) for side in edges] == [2, 2, 20, 20]
-
-
 def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(bar) -> None:
     scene = build(bar())
     step = 2.0 * step_limit(scene)
@@ -177,17 +107,6 @@ def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(ba
     assert simulation.state.step <= 2 * DiskScene.block
     assert f"t = {simulation.state.step * step:g} s" in str(caught.value)
     assert caught.value.exit_code == 3
-
-
-def test_disks_infinitely_far_away_end_a_run_whose_pairs_cannot_be_listed_anymore(bar) -> None:
-    """As a stress at rest of 1e12 Pa beside free fields leaves them within `check`, where no step would follow."""
-    planned = plan(bar({"material.law": "linearpbond", "material.elastic_start": False}))
-    simulation = Simulation(planned.stepped, planned.time_step)
-    simulation.advance(2)
-    simulation.state.u[0] = np.inf
-    with pytest.raises(RunError, match=f"grew without bound by t = {2.0 * planned.time_step:g} s"):
-        simulation.advance(1)
-    assert simulation.state.step == 2
 
 
 @pytest.mark.parametrize(("axis", "sign"), [(0, -1.0), (1, 1.0)])
@@ -203,60 +122,3 @@ def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign
         simulation.state.v[place] = speed
         with pytest.raises(RunError, match=rf"grew without bound.*near \({x:g}, {y:g}\) m"):
             watch.observe(simulation, none)
-
-
-def test_a_speed_ends_the_run_before_its_energy_is_no_number(spalling) -> None:
-    planned = plan(spalling())  # a load moves it, whose effect no wave bounds
-    simulation = Simulation(planned.scene, planned.time_step)
-    simulation.state.v[0, simulation.state.layout.slot] = 0.9 * FASTEST  # of all nodes, so that no bond feels it
-    simulation.advance(1)
-    assert np.isfinite(np.sum(planned.scene.mass * simulation.state.velocity[0] ** 2))
-
-    simulation.state.v[0, simulation.state.layout.slot] *= 1.2
-    with pytest.raises(RunError, match="smaller waves and loads"):
-        simulation.advance(1)
-
-
-def test_local_damping_is_the_materials_unless_given_otherwise(bar) -> None:
-    body = {"packing.size": [0.5, 0.5], "monitor": [], "motion.held": [], "boundary": {}, "wave": {}}
-    scene = build(bar({**body, "material.damp": 0.5}))
-    load = MASS * np.array([[1.0], [0.0], [0.0]])
-    own, other = (Simulation(scene, STEP, system=DiskSystem(scene, STEP, load=load), damp=damp) for damp in (None, 0.2))
-    for simulation in (own, other):
-        simulation.advance(11)
-
-    # the first step finds it at rest, and is half a kick unless the way to rest is sought
-    assert own.state.velocity[0, 0] == pytest.approx(STEP * (0.5 + 10 * 0.5), rel=1e-14)
-    assert other.state.velocity[0, 0] == pytest.approx(STEP * (1.0 + 10 * 0.8), rel=1e-14)
-
-
-PACKED = {
-    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
-    "material.law": "linearpbond",
-    "material.locked_in": 10e6,
-    "static": {},
-    "motion.held": [],
-    "boundary": {},
-    "wave": {},
-    "monitor": [],
-}
-
-
-def at_rest(scene: DiskScene) -> Simulation:
-    """A body as built, taken as settled."""
-    start, step = Start(np.zeros((3, scene.count)), contact_lists(scene)), choose_step(scene)[0]
-    return Simulation(scene, step, system=DiskSystem(scene, step, start), datum=start.displacement)
-
-
-def test_what_is_locked_in_is_balanced_unless_the_body_shall_settle(bar) -> None:
-    scene = build(bar(PACKED))
-    step, _ = choose_step(scene)
-    calm = at_rest(scene)
-    settling = Simulation(scene, step, system=DiskSystem(scene, step, settling=True))
-    for simulation in (calm, settling):
-        simulation.advance(20)
-
-    assert not calm.state.velocity.any()
-    # cut faces lack the push of 10 MPa: outwards
-    outwards = scene.assembly.positions - 2.0
-    assert np.sum(outwards.T * settling.state.displacement[:2]) > 0.0

@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.continuum.mesh import Around, Mesh
 from dembound.disks.material import free_surface
-from dembound.disks.material.free_surface import LEAST_MASS, _curved, _turned, cut_at, inset, mass_of, skin_depths
-from dembound.disks.material.homogenise import Network, homogenise
+from dembound.disks.material.free_surface import cut_at, skin_depths
+from dembound.disks.material.homogenise import homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
-from dembound.packings.tiling import tile
 
 SIDES = ("left", "right", "bottom", "top")
 MATERIAL = Material(density=2500.0, p_wave_speed=1000.0)
@@ -60,48 +58,6 @@ def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
     assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
-    """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
-    turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
-    of = dict(zip(("bottom", "top", "left", "right"), SIDES, strict=True))
-    assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
-    for side, before in of.items():
-        assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)
-
-
-def test_disks_that_hang_by_one_contact_carry_nothing(dense: PackedMaterial, monkeypatch) -> None:
-    """Without bonds they roll. The springs that hold them are too weak to matter: ten times weaker ones do the same."""
-    loose = replace(dense, moduli=replace(dense.moduli, pb_emod=0.0, fric=0.5))
-    strip = tile(loose.brick, (1, 3), (True, False))
-    assert (np.bincount(strip.pairs.ravel()) == 1).any()
-    depths = [loose.skin(side) for side in SIDES]
-    monkeypatch.setattr(free_surface, "FAINT", 0.1 * free_surface.FAINT)
-    fainter = replace(loose, held=())
-    assert [fainter.skin(side) for side in SIDES] == pytest.approx(depths, rel=1e-6)
-    assert all(0.0 < depth < loose.brick.mean_diameter for depth in depths)
-
-
-def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
-    skins = {"top": 0.3, "left": 0.2}
-    box = inset((0.0, 0.0, 6.0, 4.0), skins)
-    assert box == (0.2, 0.0, 6.0, 3.7)
-    mesh = Mesh.around(box, (2.9, 3.7), 4, margin=Around(right=2, bottom=1), layer=Around(right=1, bottom=2))
-    total = 1000.0 * mesh.areas + mass_of(skins, mesh, 1000.0)
-
-    # 5 × 4 elements less the box's two; three of them end at the top, and three on the left
-    assert total.sum() == pytest.approx(1000.0 * (18 * 2.9 * 3.7 + 0.3 * 8.7 + 0.2 * 11.1), rel=1e-12)
-    x, y = mesh.positions.T
-    assert set(np.flatnonzero(mass_of(skins, mesh, 1000.0))) == set(np.flatnonzero((y == y.max()) | (x == x.min())))
-
-
-def test_a_stiff_skin_leaves_nodes_half_their_mass() -> None:
-    mesh = Mesh.uniform(order=4, element=(1.0, 1.0), cells=(2, 2))
-    added = mass_of({"top": -1.0}, mesh, 1000.0)
-    top = mesh.positions[:, 1] == 2.0
-    assert added[~top] == pytest.approx(0.0)
-    assert added[top] == pytest.approx(-(1.0 - LEAST_MASS) * 1000.0 * mesh.areas[top])
-
-
 def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -> None:
     """The disks and contacts are the same, with another numbering of bricks."""
     height = 1.7
@@ -111,17 +67,6 @@ def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -
     np.testing.assert_allclose(cut.vectors, dense.brick.vectors, atol=1e-12)
     moved = (cut.positions[:, 1] + height) % cut.size[1]
     np.testing.assert_allclose(moved, dense.brick.positions[:, 1], atol=1e-12)
-
-
-def test_the_mass_below_a_cut_ends_where_it_is_used_up(dense: PackedMaterial) -> None:
-    """ρ times the height from one cut to another is the mass of the disks between them."""
-    brick, (first, last) = dense.brick, (0.8, 3.1)
-    y = brick.positions[:, 1]
-    between = dense.mass[(y >= first) & (y < last)].sum() / (dense.density * brick.size[0])
-    ends = [height + dense.cut(height)[0] for height in (first, last)]
-
-    assert ends[1] - ends[0] == pytest.approx(between, rel=1e-12)
-    assert dense.cut(first + 2.0 * float(brick.size[1])) == pytest.approx(dense.cut(first))
 
 
 @pytest.mark.parametrize("height", [0.01, 0.24, 0.26, 0.49])
@@ -143,14 +88,3 @@ def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monk
     higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
     assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
     assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
-
-
-def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial) -> None:
-    strip = tile(dense.brick, (1, 2), (False, False))
-    stiffness = dense.stiffness
-    network = Network.of_assembly(dense.brick, stiffness, strip)
-    x, y = strip.positions.T
-    bent = np.concatenate([x * (y - 5.0), -0.5 * x**2, -x])
-
-    # elongations are differences of values up to x²: rounding of 36
-    np.testing.assert_allclose(_curved(network, strip.positions, 5.0), network.motion_matrix() @ bent, atol=1e-13 * 36)

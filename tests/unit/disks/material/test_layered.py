@@ -7,7 +7,7 @@ import tomli_w
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import layered as module
 from dembound.disks.material.layered import LayeredGround, layered
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
@@ -34,13 +34,6 @@ def left_at(ground: LayeredGround, height: float) -> np.ndarray:
     return module._heights(strip, ground.zones, height) / ground.brick.mean_diameter
 
 
-def test_a_disk_on_a_joint_is_above_it(lattice) -> None:
-    ground = ground_of(lattice, STIFF, SOFT)
-    assert ground.layer_of(np.array([10.0 - 1e-3, 10.0 - 1e-9, 10.0, 11.0])).tolist() == [1, 0, 0, 0]
-    assert ground.at(9.9).density == 2300.0
-    assert ground.at(10.0).density == 1800.0
-
-
 def test_springs_across_a_joint_are_in_series(lattice) -> None:
     ground = ground_of(lattice, STIFF, SOFT)
     lower, upper = (ground.zones[number].material.stiffness for number in (1, 2))
@@ -53,26 +46,6 @@ def test_springs_across_a_joint_are_in_series(lattice) -> None:
             np.testing.assert_allclose(getattr(found, name), 2.0 / (1.0 / one + 1.0 / other))
 
 
-def test_constants_of_both_laws_have_the_same_springs(lattice) -> None:
-    ground, radii = ground_of(lattice, STIFF, SOFT), np.full(2, 0.5)
-    for pairing in ground.pairings:
-        constants = ground.pair_constants((radii, radii), lattice.vectors, pairing)
-        stiffness = ground.stiffness_of(pairing)
-        np.testing.assert_allclose(constants[:, 5] + constants[:, 7], stiffness.normal, rtol=1e-12)
-        np.testing.assert_allclose(constants[:, 6] + constants[:, 8], stiffness.shear, rtol=1e-12)
-
-
-def test_joints_of_a_lattice_on_its_rows_differ_by_rotation_alone(lattice) -> None:
-    """Mass and P waves meet the joint on a row; S waves 0.025 diameters above it, which the corrections remove."""
-    ground = ground_of(lattice, STIFF, SOFT)
-    (joint,) = ground.joints
-    assert abs(joint.mass) < 1e-9
-    assert abs(joint.p) < 1e-6
-    assert 0.01 < joint.s < 0.04
-    # corrections change the springs by some 1e-3, of which the next change is as small again
-    np.testing.assert_allclose(left_at(ground, 10.0), 0.0, atol=1e-4)
-
-
 @pytest.mark.parametrize("height", [10.0, 10.3])
 def test_corrections_move_the_joints_of_random_packings(random_brick, height) -> None:
     ground = ground_of(random_brick, STIFF, SOFT, joints=(height,))
@@ -80,28 +53,6 @@ def test_corrections_move_the_joints_of_random_packings(random_brick, height) ->
     diameter = random_brick.mean_diameter
     assert np.abs([joint.mass, joint.p, joint.s]).max() > 0.01 * diameter
     np.testing.assert_allclose(left_at(ground, height), 0.0, atol=1e-3)
-
-
-def test_equal_layers_are_one(random_brick) -> None:
-    ground = ground_of(random_brick, STIFF, STIFF)
-    assert np.isnan(ground.joints[0][1:]).all()
-    plain = make_packed_material(random_brick, STIFF, (), 1)
-    for zone in ground.zones:
-        assert zone.material.moduli == plain.moduli
-        assert zone.material.density == plain.density
-
-
-def test_its_own_material_is_that_of_the_slowest_waves(lattice) -> None:
-    soft, stiff = (make_packed_material(lattice, each, ()) for each in (SOFT, STIFF))
-    for order in ([soft, stiff], [stiff, soft]):
-        assert layered(order, (10.0,), 0.0).density == soft.density
-    assert isinstance(layered([soft, stiff], (10.0,), 0.0), PackedMaterial)
-
-
-def test_thin_layers_have_zones_within_them(lattice) -> None:
-    ground = ground_of(lattice, STIFF, SOFT, STIFF, joints=(10.0, 13.0))
-    assert [zone.high for zone in ground.zones[:-1]] == [8.5, 10.0, 11.5, 13.0, 14.5]
-    assert all(one.high == other.low for one, other in zip(ground.zones[:-1], ground.zones[1:], strict=True))
 
 
 def test_contacts_that_reach_across_a_zone_are_refused(lattice) -> None:
@@ -140,18 +91,3 @@ def test_masses_and_sides_are_those_of_the_layers() -> None:
     bottom = (table.damping > 0.0) & (table.component == 1) & (up[table.node] < 1.0)
     bottom &= np.abs(scene.positions[table.node, 0] - 6.0) < 5.0
     np.testing.assert_allclose(table.damping[bottom], 2300.0 * 900.0)
-
-
-def test_the_case_of_one_layer_has_its_material() -> None:
-    case = loads(tomli_w.dumps(TABLES))
-    assert build(case.uniform_at(2.0)).ground.density == 2300.0
-    assert build(case.uniform_at(15.0)).ground.density == 1800.0
-    assert not build(case.uniform_at(2.0)).ground.is_layered
-
-
-def test_an_s_wave_speed_alone_is_that_of_the_packing(random_brick) -> None:
-    material = Material(density=1800.0, s_wave_speed=200.0, fric=0.5)
-    for along in (0, 1):
-        made = make_packed_material(random_brick, material, (), along)
-        assert made.wave_speeds(along)[1] == pytest.approx(200.0, rel=1e-9)
-        assert made.given_speeds == (None, 200.0)

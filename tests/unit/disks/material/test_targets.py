@@ -1,7 +1,5 @@
 """Elastic constants asked of a body are those of the packing, whatever they are and along whichever direction."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -52,11 +50,9 @@ def found(tensor: np.ndarray, along: str) -> tuple[float, ...]:
 @pytest.mark.parametrize(
     "keys",
     [
-        *({**SPEEDS, "along": along} for along in ("isotropic", "x", "y")),
-        *({**YOUNG, "along": along} for along in ("isotropic", "y")),
-        {**YOUNG, "poisson": 0.37},
-        {**YOUNG, "poisson": -0.1},
-        {**SPEEDS, "fric": 0.0, "contact_share": 0.2},
+        *({**SPEEDS, "along": along} for along in ("isotropic", "x")),
+        {**YOUNG, "along": "y", "poisson": -0.1},
+        {**YOUNG, "poisson": 0.37, "fric": 0.0, "contact_share": 0.2},
         {"bulk": 40e9, "shear": 25e9},
     ],
 )
@@ -83,17 +79,6 @@ def test_the_packing_has_what_is_asked_for_after_few_solves(random_brick: Brick,
         assert made.wave_speeds("xy".index(material.along)) == pytest.approx((5000.0, 2900.0), rel=MET)
 
 
-def test_what_is_found_once_is_not_searched_again(random_brick: Brick, solves: list[int]) -> None:
-    material = Material(density=2630.0, fric=0.5, **YOUNG)
-    made = make_packed_material(random_brick, material, ())
-    same = replace(random_brick, positions=random_brick.positions.copy())
-    before = solves[0]
-    assert make_packed_material(same, material, ()).moduli == made.moduli
-    assert solves[0] == before
-    make_packed_material(replace(same, radii=1.0001 * same.radii), material, ())
-    assert solves[0] > before
-
-
 @pytest.mark.parametrize(("fric", "share"), [(0.5, 1.0), (0.0, 0.5)])
 def test_on_a_lattice_the_ratio_is_the_closed_form(fric: float, share: float) -> None:
     """c_p² = k_n/ρ and c_s² = k_s/2ρ along rows; without friction only the bonds' half has shear springs."""
@@ -107,21 +92,9 @@ def test_on_a_lattice_the_ratio_is_the_closed_form(fric: float, share: float) ->
 @pytest.mark.parametrize(
     ("keys", "held", "said"),
     [
-        (
-            {**YOUNG, "poisson": 0.45},
-            (),
-            r"^ground.poisson: asks for Poisson.s ratio .* = 0.45, but",
-        ),
-        (
-            {**SPEEDS, "s_wave_speed": 4900.0},
-            (),
-            "^ground.s_wave_speed: asks for c_p/c_s = 1.02, but this",
-        ),
-        (
-            SPEEDS,
-            ("y",),
-            "^ground.s_wave_speed: with p_wave_speed is asked of",
-        ),
+        ({**YOUNG, "poisson": 0.45}, (), r"^ground.poisson: asks for Poisson.s ratio .* = 0.45, but"),
+        ({**SPEEDS, "s_wave_speed": 4900.0}, (), "^ground.s_wave_speed: asks for c_p/c_s = 1.02, but this"),
+        (SPEEDS, ("y",), "^ground.s_wave_speed: with p_wave_speed is asked of"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_way_out(

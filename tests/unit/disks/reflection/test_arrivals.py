@@ -7,17 +7,11 @@ import pytest
 from small_cases import GRAINS, small
 
 from dembound.continuum.sizing import Signal
-from dembound.disks.reflection.arrivals import Arrival, arrivals_of, over_spectrum
-from dembound.disks.reflection.meter import Reflections
+from dembound.disks.reflection.arrivals import arrivals_of, over_spectrum
 from dembound.disks.scene import ground_of
 from dembound.waves import FileWave
 
 POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}
-
-
-def reflections(**same: np.ndarray) -> Reflections:
-    nothing = {kind: np.zeros_like(values) for kind, values in same.items()}
-    return Reflections("right", np.array([0.0, 60.0]), np.array([1.0, 2.0]), same, nothing)
 
 
 def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> None:
@@ -45,14 +39,6 @@ def test_a_load_on_the_side_does_not_reach_it_and_without_sources_all_directions
     (only,) = arrivals_of(case, "right", ground_of(case))
     assert only.name == "waves from all directions"
     np.testing.assert_allclose(only.shares / only.shares[0], np.cos(np.radians(only.angles)))
-
-
-def test_shares_are_means_over_kinds_frequencies_and_angles_of_what_is_known() -> None:
-    found = reflections(p=np.array([[0.1, 0.3], [0.3, np.nan]]), s=np.array([[0.4, 0.6], [0.4, 0.6]]))
-    half = Arrival("both", ("p", "s"), np.array([0.0, 30.0]), np.array([0.5, 0.5]))
-    # p: 0.2 at 0°, 0.3 at 60°, 0.25 between; s: 0.4 and 0.5
-    assert half.sent_back(found) == pytest.approx(0.5 * (0.225 + 0.45))
-    assert math.isnan(Arrival("none", ("s",), np.zeros(1), np.ones(1)).sent_back(reflections(p=np.ones((2, 2)))))
 
 
 def test_shares_are_weighted_with_the_spectrum_of_the_wave() -> None:

@@ -1,10 +1,8 @@
 """The forces that balance a settled body: on which sides they turn, how they end on debris, and their work."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, fitted, turn
+from disk_systems import BODY, fitted
 
 from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
@@ -12,7 +10,7 @@ from dembound.disks.stepping.balance import Balance, mean_rotations
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
-from dembound.kernels.follower import extra_work, side_rotations, turn_forces
+from dembound.kernels.follower import extra_work, turn_forces
 
 LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
 STEP = 0.1
@@ -48,28 +46,6 @@ def at(body: DiskScene, x: float, y: float) -> int:
     return int(found[0])
 
 
-def test_forces_belong_to_their_sides_those_of_corners_half_to_each(scene) -> None:
-    body = scene()
-    across = shaken(body, 5)
-    force, steady = shaken(body, 1), shaken(body, 2)
-    table = Balance(body, force, steady, shaken(body, 3, 0.1), across).followers
-    sides = list(body.edges)
-    on_side = np.array([np.isin(table.node, edge.nodes) for edge in body.edges.values()])
-
-    assert np.array_equal(table.node, np.unique(np.concatenate([edge.nodes for edge in body.edges.values()])))
-    assert [sides[k] for k in table.opposite] == ["right", "left", "top", "bottom"]
-    assert np.count_nonzero(on_side.sum(axis=0) == 2) == 4
-    for q, node in enumerate(table.node):
-        numbers = np.flatnonzero(on_side[:, q])
-        assert table.side[: len(numbers), q].tolist() == numbers.tolist()
-        assert table.side[len(numbers) :, q].tolist() == [-1] * (2 - len(numbers))
-        for s in range(2):
-            expected = (force + across)[:2, node] / len(numbers) * (s < len(numbers))
-            assert np.array_equal(table.force[s, :, q], expected)
-        assert np.array_equal(table.steady[:, q], (steady + force)[:2, node])
-    assert not table.extra.any()
-
-
 def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
     body = scene()
     moved = shaken(body, 4, 0.2)
@@ -82,41 +58,6 @@ def test_sides_turn_by_their_mean_with_the_opposite_one(scene) -> None:
     assert found == pytest.approx(expected, rel=0.0, abs=1e-14)
     assert abs(own["left"] - own["right"]) > 0.02
     assert abs(found["left"] - found["top"]) > 0.05
-
-
-@pytest.mark.parametrize("sides", [("left", "right"), ("right",)])
-def test_beside_a_free_field_forces_turn_with_the_body_relative_to_its_column(scene, sides: tuple[str, ...]) -> None:
-    body = scene(TWO_BRICKS, **{side: FREE_FIELD[side] for side in sides})
-    count = body.seam.count
-    # a disk of the right side, which has contacts beyond it, counts as no disk of that side
-    right = body.edges["right"]
-    hidden = np.setdiff1d(body.seam.node, [*body.edges["bottom"].nodes, *body.edges["top"].nodes])[-1]
-    assert hidden in right.nodes
-    body = replace(body, edges={**body.edges, "right": replace(right, nodes=np.setdiff1d(right.nodes, hidden))})
-    balance, _ = balance_of(body)
-    table = balance.followers
-
-    # of bottom and top those of the body alone; of the others also what has contacts beyond
-    assert table.node.min() >= count
-    assert table.member.min() >= count
-    assert np.array_equal(table.twin, body.seam.twin[table.member])
-    pushed = {side: edge.nodes[edge.nodes >= count] for side, edge in body.edges.items()}
-    beyond = body.positions[body.seam.node, 0] > 4.0
-    if "left" in sides:
-        pushed["left"] = np.union1d(pushed["left"], body.seam.node[~beyond])
-    assert np.all(beyond) == ("left" not in sides)
-    pushed["right"] = np.union1d(pushed["right"], body.seam.node[beyond])
-    assert hidden in pushed["right"]
-    assert hidden not in table.member
-    for k, nodes in enumerate(pushed.values()):
-        assert np.array_equal(table.node[(table.side == k).any(axis=0)], nodes)
-
-    # bricks that all move alike do not turn
-    together = shaken(body, 4)[:, body.seam.twin]
-    assert mean_rotations(body, together) == pytest.approx(dict.fromkeys(body.edges, 0.0), abs=1e-15)
-    turned = together + [[0.0], [0.0], [1.0]] * (np.arange(body.count) >= count)
-    turned[1] += 1e-3 * body.positions[:, 0] * (np.arange(body.count) >= count)
-    assert mean_rotations(body, turned)["top"] > 0.5e-3
 
 
 def resultants(body: DiskScene, force: np.ndarray) -> np.ndarray:
@@ -136,36 +77,6 @@ def isolate(parts: tuple[DiskPart, ...], particles: list[int]) -> None:
         pairs = part.pairs
         broken = np.isin(pairs.first, particles) | np.isin(pairs.second, particles)
         pairs.state[broken], pairs.cracked[broken] = TENSION, 1
-
-
-def test_on_a_box_in_the_ground_forces_turn_at_all_four_sides(scene) -> None:
-    """The column does not end at the level of the box, whose lower and upper side have the disks with ties there.
-
-    A rigid rotation of the box relative to its column turns all forces by its angle, so that a pressure from all sides,
-    through the ground or as a load, has no torque on it.
-    """
-    sides = {side: {"type": "outside"} for side in OPPOSITE}
-    sides["bottom"] |= {"wave_s": "pulse"}
-    pulse = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
-    ground = {"ground": {"size": [6.5, 8.0]}, "outside": {"element": 2.0}, "wave": {"pulse": pulse}}
-    body = scene(LATTICE | {"origin": [2.0, 2.0]}, ground, **sides)
-    box, positions = np.arange(body.seam.count, body.disk_count), body.positions.T[:2]
-    arm = positions - positions[:, box].mean(axis=1, keepdims=True)
-    across, still = np.zeros((3, body.count)), np.zeros((3, body.count))
-    for axis in (0, 1):  # a pressure
-        low, high = positions[axis, box].min(), positions[axis, box].max()
-        across[axis, box] = np.isclose(positions[axis, box], low) * 1.0 - np.isclose(positions[axis, box], high)
-    angle = 1e-3
-    moved = still.copy()
-    moved[:2, box] = (turn(angle) - np.eye(2)) @ arm[:, box]
-
-    assert mean_rotations(body, moved) == pytest.approx(dict.fromkeys(OPPOSITE, angle), rel=1e-9)
-    balance, load = Balance(body, still, still, still, across), still.copy()
-    turn_forces(balance.followers, moved, still, load, STEP)
-    np.testing.assert_allclose((across + load)[:2], turn(angle) @ across[:2], rtol=0.0, atol=1e-15)
-    places = arm + moved[:2]
-    torque = np.sum(places[0] * (across + load)[1] - places[1] * (across + load)[0])
-    assert abs(torque) < 1e-12
 
 
 def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
@@ -202,42 +113,6 @@ def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
     assert np.abs(load - turned)[:2, balance.followers.node].max() > 0.1
 
 
-def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
-    body = scene()
-    parts, (balance, steady) = parts_of(body), balance_of(body)
-    datum, debris = balance.datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
-    isolate(parts, debris)
-    balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force, None)
-
-    places, angle, moved = body.positions.T + datum[:2], 0.3, datum.copy()
-    moved[:2] += (turn(angle) - np.eye(2)) @ places
-    moved[:2, debris] += 7.0
-    # some ten operations on numbers of size 1
-    assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
-
-
-def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
-    body = scene()
-    parts, (balance, steady) = parts_of(body), balance_of(body)
-    corner, load = at(body, 0.25, 0.25), steady + balance.force
-    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
-    isolate(parts, [corner])
-    pairs = parts[0].pairs
-    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
-    balance.end_on_debris(parts, u, v, STEP, load, None)
-    assert balance.force[:2, corner].all()
-    assert balance.force[2, corner] == 0.0  # the contact would let it turn
-
-    # it flies away: a search finds no pair of it any more, so nothing in the list tells that it was ever bonded
-    u[:2, corner] = -5.0
-    contacts = parts[0].contacts
-    assert contacts is not None
-    contacts.search(u)
-    assert not contacts.freshly_torn()[corner]
-    balance.end_on_debris(parts, u, v, STEP, load, None)
-    assert not balance.force[:, corner].any()
-
-
 def test_the_work_goes_on_from_where_forces_end(scene) -> None:
     body = scene()
     rng, parts, (balance, steady) = np.random.default_rng(6), parts_of(body), balance_of(body)
@@ -262,35 +137,3 @@ def test_the_work_goes_on_from_where_forces_end(scene) -> None:
     assert max(worst) < 1e-13
     assert np.count_nonzero(balance.force[0] == 0.0) == 3
     assert abs(whole) > 0.1
-
-
-def test_through_a_seam_nothing_comes_any_more_and_the_others_bear_what_did(scene) -> None:
-    body = scene(TWO_BRICKS, **FREE_FIELD)
-    across = np.zeros((3, body.count))
-    across[:, body.seam.node] = np.random.default_rng(7).uniform(-1.0, 1.0, (3, len(body.seam.node)))
-    parts, (balance, steady) = parts_of(body), balance_of(body, across)
-    before, u, v = balance.force.copy(), shaken(body, 4), shaken(body, 5)
-    node = int(body.seam.node[3])
-    inside = int(np.setdiff1d(np.arange(body.seam.count, body.count), balance.followers.node)[20])
-    in_column = 5
-    load = steady + balance.force
-    isolate(parts, [node, inside, in_column])
-    balance.end_on_debris(parts, u, v, STEP, load, None)
-
-    ended = [node, inside, in_column]
-    rest = np.setdiff1d(np.arange(body.count), ended)
-    assert np.flatnonzero(balance.let_go).tolist() == sorted(ended)
-    assert not balance.force[:, ended].any()
-    # a sum and a difference of numbers of size 1
-    np.testing.assert_allclose(load[:, ended], steady[:, ended], rtol=0.0, atol=1e-15)
-    sides = np.isin(rest, np.concatenate([balance.followers.node, *(body.edges[s].nodes for s in ("bottom", "top"))]))
-    assert np.array_equal(balance.force[:, rest[~sides]], before[:, rest[~sides]])
-    for part in body.parts.values():
-        lost = across[:2, ended].sum(axis=1) if part.start > 0 else 0.0
-        # some sixty terms of size 1
-        np.testing.assert_allclose(
-            balance.force[:2, part].sum(axis=1), before[:2, part].sum(axis=1) + lost, rtol=0.0, atol=1e-13
-        )
-    # what came through turns no more with the body
-    turn_forces(balance.followers, u, v, load, STEP)
-    np.testing.assert_allclose(load[:, ended], steady[:, ended], rtol=0.0, atol=1e-15)

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from disk_systems import BODY, FREE_FIELD, TWO_BRICKS, shaken
 
-from dembound.boundaries import OPPOSITE
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.balance import Balance
-from dembound.disks.stepping.carriers import carried, carriers_of, on_side, relative_work, standing
+from dembound.disks.stepping.carriers import carriers_of, on_side, standing
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import TENSION
 
@@ -24,23 +23,6 @@ def scene(bar):
         return build(bar({**BODY, "material.law": "linearpbond", "packing": packing, "boundary": boundary}))
 
     return make
-
-
-def none_of(body: DiskScene) -> np.ndarray:
-    return np.zeros(body.count, dtype=np.bool_)
-
-
-def test_at_corners_each_side_has_the_force_along_its_normal(scene) -> None:
-    body = scene()
-    carriers, force = carriers_of(body), shaken(body, 1.0)
-    assert [each.side for each in carriers] == list(body.edges)
-    total = sum(on_side(each, force) for each in carriers)
-    at_sides = np.unique(np.concatenate([each.nodes for each in carriers]))
-    np.testing.assert_allclose(total[:, at_sides], force[:, at_sides], rtol=1e-15)
-    corner = int(np.argmin(body.positions.sum(axis=1)))
-    left, bottom = (on_side(each, force)[:, corner] for each in carriers if each.side in ("left", "bottom"))
-    assert left.tolist() == [force[0, corner], 0.0, 0.5 * force[2, corner]]
-    assert bottom.tolist() == [0.0, force[1, corner], 0.5 * force[2, corner]]
 
 
 def isolate(system: DiskSystem, particles: np.ndarray) -> None:
@@ -79,57 +61,3 @@ def test_breaks_at_random_leave_the_sum_of_forces_of_every_side(scene, sides) ->
     assert ended[-1] > 10
     np.testing.assert_allclose(sums(), before, rtol=0.0, atol=1e-12)  # some thirty terms of size 1
     assert standing(carriers, ~balance.force[:2].any(axis=0), balance.force).all()
-
-
-@pytest.mark.parametrize(("size", "exact"), [(1.0, True), (1e-3, False)])
-def test_the_torque_of_what_is_lost_is_carried_as_far_as_no_disk_bears_more_than_before(scene, size, exact) -> None:
-    body = scene()
-    carriers, lost = carriers_of(body), np.zeros((3, body.count))
-    left = next(each for each in carriers if each.side == "left")
-    node = int(left.nodes[2])
-    lost[:, node] = [1.0, 0.3, 0.2]
-    ended = none_of(body)
-    ended[node] = True
-    sizes, stands = np.full(body.count, size), np.ones(len(carriers), dtype=np.bool_)
-    found = carried(carriers, lost, body.positions.T, ended, ended, sizes, stands)
-    x, y = body.positions.T
-
-    def resultant(force: np.ndarray) -> np.ndarray:
-        return np.array([*force[:2].sum(axis=1), np.sum(x * force[1] - y * force[0]) + force[2].sum()])
-
-    assert np.isin(np.flatnonzero(found.any(axis=0)), left.nodes).all()
-    assert not found[:, node].any()
-    np.testing.assert_allclose(resultant(found)[:2], resultant(lost)[:2], rtol=1e-14)
-    assert bool(abs(resultant(found)[2] - resultant(lost)[2]) < 1e-13) is exact
-    equal = lost[:2].sum(axis=1) / (len(left.nodes) - 3)  # two corners bear nothing along the side
-    assert np.hypot(*(found[:2, left.nodes].T - equal).T).max() < size + np.hypot(*equal)
-
-
-def test_a_side_that_has_lost_half_of_its_forces_carries_no_more_nor_does_the_opposite_one(scene) -> None:
-    body = scene()
-    carriers, force = carriers_of(body), np.zeros((3, body.count))
-    by_side = {each.side: each.nodes for each in carriers}
-    force[0, by_side["left"]], force[0, by_side["right"]] = 1.0, -1.0
-    force[1, by_side["bottom"]] = 2.0
-    ended = none_of(body)
-    assert standing(carriers, ended, force).all()
-    ended[by_side["top"]] = True  # bears nothing
-    ended[by_side["left"][1:5]] = True
-    assert standing(carriers, ended, force).all()
-    ended[by_side["left"][1:7]] = True
-    stands = dict(zip((each.side for each in carriers), standing(carriers, ended, force), strict=True))
-    assert stands == {side: side not in ("left", "right") for side in stands}
-
-
-def test_work_counts_against_the_mean_motion_of_the_side(scene) -> None:
-    body = scene()
-    carriers, force, moved = carriers_of(body), shaken(body, 1.0), np.zeros((3, body.count))
-    moved[:2] = [[0.3], [-0.2]]
-    np.testing.assert_allclose(relative_work(carriers, force, moved, none_of(body)), 0.0, atol=1e-14)
-    left = next(each for each in carriers if each.side == "left")
-    node = int(left.nodes[4])
-    moved[:, node] += [2.0, 0.0, 0.5]
-    apart = 2.0 * np.where(left.nodes == node, 1.0 - 1.0 / len(left.nodes), -1.0 / len(left.nodes))
-    expected = np.sum((left.share * force[:, left.nodes])[0] * apart) + 0.5 * force[2, node]
-    assert relative_work(carriers, force, moved, none_of(body))[carriers.index(left)] == pytest.approx(expected)
-    assert OPPOSITE["left"] == "right"

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, SPALLING, small
 
-from dembound.accuracy.runner import measure
-from dembound.disks.stepping.load_factor import LOAD_FACTOR, load_factor_in_words
+from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.errors import CaseError
-from dembound.kinds.disks.kind import Disks
-from dembound.laws.elastic import Limits, in_columns
-from dembound.laws.linearpbond import LIMITS, limit_in_words, limit_lines
-from dembound.running import Progress, plan, resume_case, run_case
+from dembound.laws.elastic import Limits
+from dembound.laws.linearpbond import LIMITS, limit_lines
+from dembound.running import plan, resume_case, run_case
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)
 
@@ -44,53 +42,12 @@ def test_lines_are_the_limits_of_the_law():
         np.testing.assert_allclose(room, reached(CLOSED, STRENGTH, *strain), rtol=1e-12)
 
 
-def test_columns_of_limits_are_those_of_each_pair():
-    constants, limits = np.array([CLOSED] * 2), [STRENGTH, STRENGTH._replace(friction=0.1, tension=1e5, tan_fa=0.2)]
-    both = limit_lines(constants, in_columns(np.array([each[:4] for each in limits]), STRENGTH.geometry))
-    each = [limit_lines(constants[:1], one) for one in limits]
-    for found, expected in zip(both, zip(*each, strict=True), strict=True):
-        np.testing.assert_array_equal(found, np.vstack(expected))
-
-
-def test_pairs_have_only_the_limits_of_what_they_have():
-    gap = [*CLOSED[:3], 0.49, *CLOSED[4:]]
-    bare = [*CLOSED[:5], 1e9, 5e8, 0.0, 0.0, 0.0, AREA, SECTION]
-    bonds = [*CLOSED[:5], 0.0, 0.0, *CLOSED[7:]]
-    slopes, allowed = limit_lines(np.array([gap, bare, bonds]), STRENGTH)
-    np.testing.assert_array_equal(
-        np.isfinite(allowed),
-        [[True, False, False, *[True] * 4], [*[True] * 3, *[False] * 4], [False, False, False, *[True] * 4]],
-    )
-    # the gap of 10 mm closes at a stretch of −10 mm
-    assert allowed[0, 0] / slopes[0, 0, 0] == pytest.approx(-0.01)
-    assert slopes[0, 0, 0] < 0.0
-    assert [limit_in_words(0, np.array(each)) for each in (gap, bare)] == ["closes", "opens"]
-
-
 STATIC = PUSHED | {
     "material": PUSHED["material"] | {"fric": 0.4, "pb_ten": 1.5e6, "pb_coh": 1e6, "pb_fa": 30.0},
     "boundary": {"left": {"type": "viscous_input", "wave_p": "push", "wave_s": "shake"}, "right": {"type": "viscous"}},
     "static": {"stress": [-1e6, -0.8e6, 0.0]},
     "output": {"load_factor": True, "contacts": True, "snapshots": 100, "pictures": False},
 }
-
-
-QUIET = {"output.contacts": False, "output.snapshots": 0}
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> dict:
-    """The summary of a run."""
-    return json.loads(
-        (run_case(small(STATIC, "whole", QUIET), tmp_path_factory.mktemp("whole")) / "summary.json").read_text()
-    )
-
-
-def test_a_resumed_run_has_the_same_factor(whole, tmp_path):
-    resumed = resume_case(run_case(small(STATIC, "part", QUIET | {"run.duration": 0.006}), tmp_path), until=0.01)
-    assert json.loads((resumed / "summary.json").read_text())["load_factor"] == whole["load_factor"]
-    first, second = whole["load_factor"]["particles"]
-    assert first != second
 
 
 def test_a_body_beyond_its_limits_at_rest_has_the_factor_zero(tmp_path):
@@ -109,34 +66,11 @@ def test_a_body_beyond_its_limits_at_rest_has_the_factor_zero(tmp_path):
     )
 
 
-def test_the_factor_of_a_choice_is_found_as_in_a_run(whole):
-    case = small(STATIC, "charted", QUIET)
-    factor = whole["load_factor"]["factor"]
-    assert measure(case, Progress())[0].findings[LOAD_FACTOR] == (factor, "1")
-    x, y = whole["load_factor"]["position"]
-    assert LOAD_FACTOR in measure(case, Progress(), inside=(x - 0.1, y - 0.1, x + 0.1, y + 0.1))[0].findings
-    assert LOAD_FACTOR not in measure(case, Progress(), inside=(x + 0.1, y + 0.1, x + 0.2, y + 0.2))[0].findings
-    assert any("holds up to" in line for line in whole["warnings"]) is (factor < 1.0)
-
-
 def test_without_limits_there_is_no_factor(tmp_path):
     case = small(PUSHED, "free", {"material.contact_share": 0.0, "output.load_factor": True, "output.pictures": False})
     summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
     assert summary["load_factor"] == {"factor": None}
     assert load_factor_in_words(summary["load_factor"]) == "the elastic law holds under any multiple of the waves"
-
-
-def test_bonds_that_do_not_break_have_no_limit(tmp_path):
-    """Of bonds alone; in all 20 columns of disks none breaks, and in 2 the first one is farther inside."""
-    bonds = QUIET | {"material.contact_share": 0.0}
-    found = {}
-    for depth in (0, 2, 20):
-        case = small(STATIC, f"kept{depth}", bonds | {f"boundary.{side}.intact": depth for side in ("left", "right")})
-        summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
-        found[depth] = summary["load_factor"]
-    assert found[20] == {"factor": None}
-    assert found[2]["factor"] >= found[0]["factor"]
-    assert 1.0 < found[2]["position"][0] < 9.0
 
 
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
@@ -158,8 +92,32 @@ def test_where_there_is_no_factor_it_is_refused(tables, changes, problem):
         small(tables, "refused", changes)
 
 
-def test_rows_that_move_identically_are_all_compared():
-    tables = PUSHED | {"boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}}}
-    one, whole = (small(tables, "rows", {"output.load_factor": asked}) for asked in (False, True))
-    assert Disks().reduced(Disks().build(one)).scene.disk_count < 100
-    assert Disks().reduced(Disks().build(whole)).scene.disk_count == 100
+def test_bonds_that_do_not_break_have_no_limit(tmp_path):
+    """Of bonds alone; in all 20 columns of disks none breaks, and in 2 the first one is farther inside."""
+    bonds = QUIET | {"material.contact_share": 0.0}
+    found = {}
+    for depth in (0, 2, 20):
+        case = small(STATIC, f"kept{depth}", bonds | {f"boundary.{side}.intact": depth for side in ("left", "right")})
+        summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
+        found[depth] = summary["load_factor"]
+    assert found[20] == {"factor": None}
+    assert found[2]["factor"] >= found[0]["factor"]
+    assert 1.0 < found[2]["position"][0] < 9.0
+
+
+QUIET = {"output.contacts": False, "output.snapshots": 0}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> dict:
+    """The summary of a run."""
+    return json.loads(
+        (run_case(small(STATIC, "whole", QUIET), tmp_path_factory.mktemp("whole")) / "summary.json").read_text()
+    )
+
+
+def test_a_resumed_run_has_the_same_factor(whole, tmp_path):
+    resumed = resume_case(run_case(small(STATIC, "part", QUIET | {"run.duration": 0.006}), tmp_path), until=0.01)
+    assert json.loads((resumed / "summary.json").read_text())["load_factor"] == whole["load_factor"]
+    first, second = whole["load_factor"]["particles"]
+    assert first != second

@@ -6,9 +6,7 @@ from small_cases import SURROUNDED, small
 
 from dembound.boundaries.edge import SIDES
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.near_ties import sides_near
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.contacts import TENSION
 from dembound.motion.simulation import Simulation
 
 FULL = {"material.law": "linearpbond", "material.elastic_start": False}
@@ -48,17 +46,6 @@ class Watched:
         return {side: event for side, event in found.items() if event is not None}
 
 
-def test_near_are_disks_within_two_diameters_of_a_tied_one(scene) -> None:
-    """They belong to the side of the nearest tied disk; a disk tied by both sides of a corner belongs to the first."""
-    x, y = scene.assembly.positions.T
-    near = sides_near(scene)
-    expected = np.select([x < 3.0, x > 9.0, y < 3.0], [0, 1, 2], -1)
-    corner = (y < 3.0) & ((x < 3.0) | (x > 9.0))
-    np.testing.assert_array_equal(near[~corner], expected[~corner])
-    assert set(near[corner]) == {0, 1, 2}
-    assert (near >= 0).sum() == 12 * 6 - 6 * 3
-
-
 def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
     run = Watched(scene)
     assert run.look(10) == {}
@@ -78,18 +65,6 @@ def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
     assert set(found) == {"left", "bottom"}
 
 
-def test_beside_a_column_places_are_those_of_the_body() -> None:
-    """The body's disks come after those of the column, beyond the continuum."""
-    wave = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
-    changes = {"boundary.bottom": {"type": "outside", "wave_s": "up"}, "wave.up": wave}
-    scene = build(small(SURROUNDED, "column", FULL | changes))
-    assert scene.seam is not None
-    assert (sides_near(scene)[: scene.seam.count] == -1).all()
-    run = Watched(scene)
-    run.pairs.arrays.slip[run.between((2.5, 4.5), (3.5, 4.5))] = 0.1
-    assert run.look(30) == {"left": {"time": 30 * STEP, "position": [3.0, 4.5]}}
-
-
 @pytest.mark.parametrize(("way", "opens"), [(1.0, True), (-1.0, False)])
 def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None:
     run = Watched(scene)
@@ -100,25 +75,6 @@ def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None
     assert set(found) == ({"right", "bottom"} if opens else set())  # and below, where the nearest ties are those
     if opens:
         assert {event["position"][0] for event in found.values()} == {10.0}
-
-
-def test_pairs_are_followed_as_lists_are_renewed(scene) -> None:
-    """Pairs that are no longer listed are far apart."""
-    run = Watched(scene)
-    near = run.between((2.5, 4.5), (3.5, 4.5))
-    assert run.look(10) == {}
-    run.pairs.arrays.slip[near] = 0.3
-    run.pairs.search(np.zeros((3, scene.count)))
-    run.pairs.arrays.force[0, run.pairs.live[0]] = 1e6
-    assert run.look(20) == {"left": {"time": 20 * STEP, "position": [3.0, 4.5]}}
-
-    run = Watched(scene)
-    run.pairs.arrays.state[run.between((10.5, 4.5), (11.5, 4.5))] = TENSION
-    apart = np.zeros((3, scene.count))
-    apart[0, : scene.disk_count] = 0.2 * (np.abs(scene.assembly.positions - [11.5, 4.5]).max(axis=1) < 0.1)
-    run.pairs.search(apart)
-    run.pairs.arrays.force[0, run.pairs.live[0]] = 1e6
-    assert run.look(30) == {"right": {"time": 30 * STEP, "position": [11.0, 4.5]}}
 
 
 def test_a_continued_run_remembers_it(scene) -> None:

@@ -1,7 +1,6 @@
 """Parts of bonded disks: when their law ends, and what they do then."""
 
 import numpy as np
-import pytest
 from disk_systems import STEP, WITH_HISTORY, shaken
 
 from dembound.disks.contacts.contact_list import ContactList
@@ -9,7 +8,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels import loop
-from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
+from dembound.kernels.common import DONE, LAW_ENDS
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.tables import Body, Log, Supports
 from dembound.motion.state import State
@@ -57,32 +56,3 @@ def test_the_elastic_law_ends_before_the_step_that_leaves_it(loose) -> None:
     again, u, v = part_of(body), shaken(body, 0.0), shaken(body, 1.0)
     assert advance(again, body, done, u, v) == (done, DONE)
     assert slack(u - STEP * v, contacts.arrays, contacts.limits, False) >= 0.0
-
-
-def test_a_list_that_is_not_old_stays(loose) -> None:
-    body = loose(**WITH_HISTORY)
-    part, moved = part_of(body), np.zeros((3, body.count))
-    arrays, still = listed(part).arrays, np.zeros((3, body.count))
-
-    def react(why: int) -> bool:
-        """Whether the part lists its pairs anew."""
-        part.react(why, 0, State(body.layout, moved, still, still, np.zeros((0, 3, 2)), np.zeros(0)))
-        return listed(part).arrays is not arrays
-
-    # that of another part may be
-    moved[0, ::2] = 0.99 * listed(part).skin
-    assert not react(LIST_ENDS)
-    moved[0, 1::2] = 100.0  # all are carried along
-    moved[0, ::2] = 100.0 + 0.99 * listed(part).skin
-    assert not react(LIST_ENDS)
-    moved[0, ::2] = 100.0 + 1.01 * listed(part).skin
-    assert not any(react(why) for why in (DONE, LAW_ENDS, BROKE))
-    assert react(LIST_ENDS)
-
-
-def test_the_energy_of_the_elastic_law_is_that_of_its_own_contacts(loose) -> None:
-    plain, watched = loose(), loose(**{"material.law": "linearpbond"})
-    u = shaken(plain, 1e-6)
-
-    # the same contacts, in another order
-    assert part_of(watched).stored(u) == pytest.approx(part_of(plain).stored(u), rel=1e-13)

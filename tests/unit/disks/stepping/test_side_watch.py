@@ -6,10 +6,9 @@ from disk_systems import BODY
 
 from dembound.disks.scene import build
 from dembound.disks.stepping.balance import Balance
-from dembound.disks.stepping.side_watch import COLUMN, SideWatch
+from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import RunError
-from dembound.kernels.contacts import REACHED
 
 LATTICE = {"pattern": "A", "size": [6.0, 5.0], "radius": 0.25}
 BOTTOM = {"type": "viscous", "intact": 2}
@@ -55,31 +54,6 @@ def test_all_forces_together_count_where_the_side_moves_as_a_whole(bar) -> None:
     assert watched.look(3, moved=60.0, borne=-20.0)["work"]["size"] == pytest.approx(0.4)
     with pytest.raises(RunError, match="51 %"):
         watched.look(4, moved=60.0, borne=-9.0)
-
-
-def test_nothing_is_said_before_energy_came_in(bar) -> None:
-    assert Watched(bar).look(1, moved=1e3, energy=0.0)["work"] is None
-
-
-def test_the_largest_turn_is_that_of_a_disk_that_bears_a_force(bar) -> None:
-    watched = Watched(bar)
-    watched.look(1, turned=-0.3)
-    assert watched.look(2, turned=0.1)["turn"] == {"size": 0.3, "side": "bottom", "time": 0.5}
-    idle = Watched(bar)
-    idle.bottom = idle.scene.edges["top"].nodes
-    assert idle.look(1, turned=0.3)["turn"] is None
-
-
-def test_bonds_at_their_strength_are_counted_by_zone_from_the_first_look(bar) -> None:
-    watched = Watched(bar)
-    pairs = watched.system.contacts["body"]
-    assert watched.look(1)["reached"] == {}
-    kept = np.flatnonzero(pairs.arrays.kept)
-    pairs.arrays.kept[kept[:3]] = REACHED
-    assert watched.look(4)["reached"] == {"bottom": {"bonds": 3, "time": 2.0}}
-    pairs.arrays.kept[kept[:5]] = REACHED
-    assert watched.look(6)["reached"] == {"bottom": {"bonds": 5, "time": 2.0}}
-    assert COLUMN not in watched.watch.describe()["reached"]
 
 
 def test_findings_are_kept_over_a_restart(bar) -> None:

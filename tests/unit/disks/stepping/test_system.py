@@ -5,15 +5,12 @@ import pytest
 from disk_systems import (
     BONDED,
     ELASTIC,
-    EPS,
-    REFERENCE,
     SIDES,
     STEP,
     TOUGH,
     WEIGHT,
     WITH_HISTORY,
     begun,
-    forces_of,
     settled,
     shaken,
 )
@@ -21,36 +18,6 @@ from disk_systems import (
 from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import DONE, LAW_ENDS, LIST_ENDS
-
-
-@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
-def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(loose, boundary: dict) -> None:
-    body = loose(**TOUGH, boundary=boundary)
-    system = DiskSystem(body, STEP)
-    state = begun(system)
-    state.displacement, state.velocity, state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
-    expected = contact_lists(body)
-    for contacts in expected.values():
-        contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
-    moved, speed = state.displacement.copy(), state.velocity.copy()
-    system.react(DONE, 3, state)
-    system.react(LIST_ENDS, 3, state)
-    assert state.laws == [(ELASTIC, 0)]
-    assert state.switch_velocity.shape == (3, 0)
-    free = not boundary
-    system.react(LAW_ENDS, 3, state)
-
-    assert state.laws == [(ELASTIC, 0), (BONDED, 7)]
-    assert {part.law_name for part in system.parts} == {system.law_name} == {BONDED}
-    assert np.array_equal(state.switch_velocity, state.velocity)
-    assert not system.steady.any()
-    # one that nothing holds has really turned by what the law of small displacements took for a turn
-    assert np.array_equal(state.displacement, moved) != free
-    assert np.array_equal(state.velocity, speed) != free
-    if not free:
-        for name, contacts in system.contacts.items():
-            assert contacts.arrays.shear.any()
-            assert np.array_equal(contacts.arrays.shear, expected[name].arrays.shear)
 
 
 @pytest.mark.parametrize("balanced", [False, True])
@@ -81,34 +48,31 @@ def test_energy_that_comes_with_another_law_is_written_down(loose, balanced: boo
     assert not np.delete(state.work, 4, axis=1).any()
 
 
-@pytest.mark.parametrize(
-    ("changes", "balanced", "turns"), [({}, True, True), (REFERENCE, True, False), ({}, False, False)]
-)
-def test_what_balances_turns_under_a_law_that_follows_the_motion(
-    loose, changes: dict, balanced: bool, turns: bool
-) -> None:
-    body = loose(**WITH_HISTORY, **changes)
-    start = settled(body, has_history=False) if balanced else None
-    system = DiskSystem(body, STEP, start)
-    state = begun(system, None if start is None else start.displacement)
-    assert system.turning is None
-    system.react(LAW_ENDS, 1, state)
-
-    assert (system.turning is not None) == turns
-    if turns:
-        assert system.turning is system.balance.followers
-
-
-def test_a_law_that_changes_in_good_time_changes_no_force(loose) -> None:
-    body = loose(**WITH_HISTORY, **REFERENCE)
+@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
+def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(loose, boundary: dict) -> None:
+    body = loose(**TOUGH, boundary=boundary)
     system = DiskSystem(body, STEP)
     state = begun(system)
-    state.displacement = shaken(body, 1e-6)
-    before = system.steady + system.forces.elastic(state.displacement)
-    system.react(LAW_ENDS, 1, state)
-    steady = system.steady if system.steady.size else 0.0  # no array where all are zero
-    after = steady + forces_of(system, system.contacts, state.displacement)
+    state.displacement, state.velocity, state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
+    expected = contact_lists(body)
+    for contacts in expected.values():
+        contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
+    moved, speed = state.displacement.copy(), state.velocity.copy()
+    system.react(DONE, 3, state)
+    system.react(LIST_ENDS, 3, state)
+    assert state.laws == [(ELASTIC, 0)]
+    assert state.switch_velocity.shape == (3, 0)
+    free = not boundary
+    system.react(LAW_ENDS, 3, state)
 
-    # sums of some five locked-in forces
-    scale = np.abs(system.contacts["body"].force[:, :2]).max()
-    np.testing.assert_allclose(after, before, rtol=0.0, atol=20.0 * EPS * scale)
+    assert state.laws == [(ELASTIC, 0), (BONDED, 7)]
+    assert {part.law_name for part in system.parts} == {system.law_name} == {BONDED}
+    assert np.array_equal(state.switch_velocity, state.velocity)
+    assert not system.steady.any()
+    # one that nothing holds has really turned by what the law of small displacements took for a turn
+    assert np.array_equal(state.displacement, moved) != free
+    assert np.array_equal(state.velocity, speed) != free
+    if not free:
+        for name, contacts in system.contacts.items():
+            assert contacts.arrays.shear.any()
+            assert np.array_equal(contacts.arrays.shear, expected[name].arrays.shear)

@@ -51,22 +51,6 @@ def test_the_mass_up_to_where_that_of_the_packing_ends_is_kept() -> None:
     assert corner.outside.body.mass.sum() == pytest.approx(2500.0 * area, rel=1e-12)
 
 
-def test_only_free_sides_along_a_continuum_have_a_skin() -> None:
-    assert set(scene("bottom").outside.skins) == {"left", "right"}
-    assert set(scene("left", "right", "bottom").outside.skins) == {"top"}
-    assert not scene("left", "right", "bottom", "top").outside.skins
-
-
-def test_ties_read_the_continuum_within_its_elements() -> None:
-    """Contacts of a random packing are up to an arm off the sides, at the surface above the continuum's edge."""
-    wall = scene("left", "right", "bottom").outside.wall
-    local = wall.local
-    low, high = (wall.mesh.positions[wall.mesh.nodes[wall.element, k, k]] for k in (0, -1))
-    np.testing.assert_allclose(wall.bonds.point, 0.5 * (low + high + local * (high - low)), atol=1e-12)
-    assert np.abs(local).max() <= 1.0 + 1e-9
-    assert np.isclose(np.abs(local), 1.0).any(axis=1).mean() > 0.3
-
-
 def test_small_elements_keep_a_usable_step() -> None:
     """Elements of five disks have light nodes. With slopes taken at their edges the step would be 22 times smaller."""
     assert step_limit(scene("bottom", **{"outside.element": 2.5})) > 0.25 * step_limit(scene())

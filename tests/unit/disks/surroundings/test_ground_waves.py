@@ -3,6 +3,8 @@
 import numpy as np
 from ground_motions import RAMP, ground, sine
 
+from dembound.disks.surroundings.ground_waves import GroundMotion
+
 
 def test_near_places_the_motion_is_that_of_the_waves() -> None:
     """Places within 8 m, half of the shortest wave: 1e-5 by the estimate of `DELAYS`; correctors as by differences."""
@@ -31,3 +33,13 @@ def test_the_packing_moves_beyond_its_mean_strain() -> None:
     moved = waves.motion("displacement", np.array([1.0]), np.array([(2.0, 2.0)]), corrector)[0, 0]
     expected = np.append(u(2.0, 2.0), 0.0) + corrector[:, :, 0] @ [xx, yy, xy, yx]
     np.testing.assert_allclose(moved, expected, rtol=1e-9)
+
+
+def test_disks_of_a_band_count_by_their_mass_at_its_centre_of_mass() -> None:
+    """Then a uniform strain is exact between the first and the last band, for any disks."""
+    rng = np.random.default_rng(4)
+    up, mass = rng.uniform(0.0, 8.0, 60), rng.uniform(1.0, 2.0, 60)
+    heights = np.linspace(1.0, 7.0, 23)
+    values = np.column_stack([3.0 * up - 1.0, 2.0 - 5.0 * up, up])
+    found = GroundMotion(up, mass, 1.0, heights).at_heights(values)
+    np.testing.assert_allclose(found[:, :2], np.column_stack([3.0 * heights - 1.0, 2.0 - 5.0 * heights]), atol=1e-12)

@@ -44,31 +44,6 @@ def test_equal_layers_move_as_uniform_ground() -> None:
     assert not power_through("left", edges, equal)(times).any()
 
 
-def test_near_a_joint_each_layer_has_its_own_gradients() -> None:
-    """Ties within 4 m on both sides of a joint: motion, strain and velocities half a step behind."""
-    waves = layered([SOFT, GENERAL], [12.0], 0.0)
-    rng = np.random.default_rng(2)
-    places, corrector = rng.uniform([0.0, 10.0], [1.0, 14.0], (20, 2)), rng.normal(size=(3, 4, 20))
-    near = waves.near(places)
-    exact = waves.motion("displacement", TIMES, places, corrector)
-    found = np.einsum("tq,cdq->tdc", near.amplitudes(TIMES, 0.0), near.motion(places, corrector))
-    np.testing.assert_allclose(found, exact, atol=1e-5 * np.abs(exact).max())
-    exact = waves.motion("velocity", TIMES, places, corrector)
-    behind = near.amplitudes(TIMES + 1e-3, 1e-3) @ near.velocities(1e-3).T
-    found = np.einsum("tq,cdq->tdc", behind, near.motion(places, corrector))
-    np.testing.assert_allclose(found, exact, atol=1e-5 * np.abs(exact).max())
-
-
-def test_motion_and_traction_do_not_jump_at_a_joint_and_the_surface_is_free() -> None:
-    waves = layered([SOFT, Medium.isotropic(2300.0, 1400.0, 700.0)], [12.0], 0.0)
-    for wave in (0, 1):
-        for of in ("velocity", "traction"):
-            above, below = (waves.along(wave, of, TIMES, np.array([12.0]), layer) for layer in (0, 1))
-            np.testing.assert_allclose(above, below, atol=1e-9 * np.abs(below).max())
-        at_surface = waves.along(wave, "traction", TIMES, np.array([SURFACE]), 0)
-        assert np.abs(at_surface).max() < 1e-9 * np.abs(below).max()
-
-
 def test_ground_without_a_surface_sends_nothing_back() -> None:
     """Above the uppermost joint; below it runs what the joint reflects, (Z₁ − Z₂)/(Z₁ + Z₂) of the wave."""
     stiff = Medium.isotropic(2300.0, 1000.0, 500.0)

@@ -7,7 +7,6 @@ from ground_motions import GENERAL
 from dembound.continuum.medium import Medium, incident_wave, reflected_waves
 from dembound.disks.surroundings.ground_waves import GroundWaves
 from dembound.disks.surroundings.incident import power_through
-from dembound.disks.surroundings.layered_waves import rising_in_layers
 from dembound.disks.surroundings.oblique_layers import ObliqueLayers, oblique_in_layers
 from dembound.waves import Ricker
 
@@ -56,26 +55,3 @@ def test_near_a_joint_each_layer_has_its_own_gradients() -> None:
     behind = near.amplitudes(TIMES + 1e-3, 1e-3) @ near.velocities(1e-3).T
     found = np.einsum("tq,cdq->tdc", behind, near.motion(places, 0.0 * corrector))
     np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
-
-
-def test_bonds_across_a_joint_have_the_gradients_of_the_layer_of_their_disk() -> None:
-    """Contacts a little above a joint at 12 m, of disks below it; also under waves that run straight up."""
-    straight = rising_in_layers([SOFT, GENERAL], [12.0], (SURFACE, MASS), (PULSE, PULSE), 0.0, (0.0, 0.2), GRAIN)
-    x, values = np.array([0.0, 0.3, 0.8]), np.random.default_rng(3).normal(size=(3, 4, 3))
-    places, below = (np.column_stack([x, np.full(3, y)]) for y in (12.0 + 1e-6, 12.0 - 1e-6))
-    for waves in (layers([SOFT, GENERAL], [12.0]), straight):
-        near = waves.near(np.concatenate([places, below]))
-        found, own, other = (
-            near.strained(*given) @ near.amplitudes(TIMES, 0.0).T
-            for given in ((places, values, below[:, 1]), (below, values), (places, values))
-        )
-        np.testing.assert_allclose(found, own, atol=1e-4 * np.abs(own).max())
-        assert np.abs(found - other).max() > 0.2 * np.abs(own).max()
-
-
-def test_motion_does_not_jump_at_a_joint_and_late_times_continue_it() -> None:
-    waves, rock = layers([SOFT, GENERAL], [12.0]), 12.0 - 1e-7
-    times = np.linspace(0.0, 0.6, 40)  # the window doubles twice
-    above, below = (waves.motion("velocity", times, np.array([(3.0, y)]))[:, 0, :2] for y in (12.0, rock))
-    assert np.abs(above).max() > 0.3
-    np.testing.assert_allclose(above, below, atol=1e-4)

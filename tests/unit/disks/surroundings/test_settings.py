@@ -7,10 +7,15 @@ import pytest
 from disk_systems import LAMB
 
 from dembound.continuum import sizing
-from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Medium
-from dembound.disks.surroundings.near_fields import lasting_time, near_fields, signals_of
-from dembound.disks.surroundings.settings import Buried, buried, mesh_of, settings_of
+from dembound.disks.surroundings.settings import (
+    Buried,
+    buried,
+    lasting_time,
+    mesh_of,
+    near_fields,
+    settings_of,
+)
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 
@@ -37,15 +42,6 @@ def chosen(case, diameter: float = 1.0, sides=SIDES):
     return settings_of(case, ROCK, diameter, BOX, sides)
 
 
-def test_settings_left_out_are_those_of_the_waves(case) -> None:
-    found = chosen(case())
-
-    assert found.element == pytest.approx(sizing.element_size(signals_of(case()), ROCK, 4, 1e-3))
-    assert (found.margin, found.layers) == (1, 3)
-    assert found.absorption == Absorption(pytest.approx(1e-4), 0.3, 0.1)
-    assert chosen(case(outside={"accuracy": 1e-2})).absorption.reflection == pytest.approx(1e-3)
-
-
 def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) -> None:
     """A load 1.5 m from the left side, a hole 2 m from the bottom; no such distance counts at a free side."""
     near = case(load={"position": [1.5, 9.5]})
@@ -67,37 +63,10 @@ def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) ->
     assert chosen(case(packing=random, load={"position": [1.5, 9.5]})).element == pytest.approx(11.2)
 
 
-def test_a_whole_number_of_elements_fits(case) -> None:
-    found = chosen(case())._replace(element=9.0, least=0.0)
-
-    assert [found.side(length) for length in (40.0, 9.0, 9.1, 3.0)] == [8.0, 9.0, 4.55, 3.0]
-    # but not more than are useful
-    assert [found._replace(least=6.0).side(length) for length in (40.0, 9.1, 12.0, 3.0)] == [8.0, 9.1, 6.0, 3.0]
-
-
-def test_what_makes_waves(case) -> None:
-    assert [(each.wave.type, each.is_force) for each in signals_of(case())] == [("cosine", True)]
-    steady = signals_of(case(load={"wave": None}))
-    assert [(each.wave.type, each.is_force) for each in steady] == [("cosine", False), ("constant", True)]
-    assert sizing.jumps(steady[1])
-    driven = {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "outside"}}
-    both = signals_of(case(boundary=driven))
-    assert [(each.wave.type, each.is_force) for each in both] == [("cosine", False), ("cosine", True)]
-
-
 def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
     with pytest.raises(CaseError, match=r"outside.element: is absent, but the case has no wave"):
         chosen(replace(case(), load=(), wave={}))
     assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
-
-
-def test_without_waves_the_size_suits_the_holes(case) -> None:
-    """A quarter of the body where nothing is; near a hole as if its wall were pressed, as it moves when it is freed."""
-    still = {"load": {"wave": None, "position": None, "force": None, "acceleration": [0.0, -9.81]}, "wave": {}}
-    still["static"] = {"boundary": {"bottom": {"type": "fixed"}}}
-    assert chosen(case(**still)).element == 5.0
-    hole = {"name": "h", "type": "circle", "centre": [20.0, 5.0], "radius": 3.0}
-    assert chosen(case(hole=[hole | {"centre": [20.0, 3.0]}], **still), 0.1).element == pytest.approx(6.0 * 0.05**0.2)
 
 
 def test_a_load_that_stays_needs_a_margin(case) -> None:
@@ -112,19 +81,6 @@ def test_a_load_that_stays_needs_a_margin(case) -> None:
         less, enough = (mesh_of(found._replace(margin=found.margin - each), BOX, sides).inner for each in (1, 0))
         assert less < inner <= enough
         assert found.layers == sizing.layer_count(4, 5e-4)
-
-
-def test_elements_lie_where_there_are_sides(case) -> None:
-    found = chosen(case())._replace(element=10.0, margin=2, layers=3)
-    mesh = mesh_of(found, BOX, ("right", "bottom"))
-
-    assert mesh.cells == (4 + 5, 2 + 5)
-    assert mesh.origin == (0.0, -50.0)
-    left, right, lower, upper = mesh.sides
-    assert (left, lower, right, upper) == BOX
-    assert mesh.layer == (0, 3, 3, 0)
-    assert mesh.axes[0].thickness == (0.0, 30.0)
-    assert math.isclose(mesh.inner, 60.0)
 
 
 def test_elements_of_flat_ground_are_about_as_wide_as_high(case) -> None:
@@ -155,11 +111,3 @@ def test_layers_begin_farther_beside_deep_ground(case) -> None:
     # cos θ = 0.75/2 · 1: 53.4 m from the hole, less 20 m of disks and 0.4 of three elements
     assert found.margin == math.ceil((132.0 * 0.375 / math.sqrt(1.0 - 0.375**2) - 20.0 - 0.4 * 15.0) / 5.0)
     assert settings_of(with_changes(deep, {"outside.margin": 2}), ROCK, 1.0, box, SIDES).margin == 2
-
-
-def test_without_a_surface_or_sides_nothing_comes_back(case) -> None:
-    found = case(hole=[HOLE])
-    assert len(buried(found, BOX, SIDES)) == 4  # the hole and the load, on two sides
-    assert len(buried(found, BOX, ("left",))) == 2
-    assert buried(found, BOX, (*SIDES, "top")) == []
-    assert buried(found, BOX, ("bottom",)) == []

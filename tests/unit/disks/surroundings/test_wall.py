@@ -99,25 +99,6 @@ def test_ties_neither_push_nor_turn_the_whole(ground) -> None:
     assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(force).max()
 
 
-def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground) -> None:
-    """Sides moved by 2 m move the motion of ties by 1 m along the gradients of each component."""
-    tied = Tied(ground)
-    bonds = CutBonds.of(ground, tied.cut, tied.body.positions)
-    near, far = (bonds.between(np.add(tied.mesh.sides, [-offset, offset, -offset, offset])) for offset in (0.0, 2.0))
-    moved = far.corrector - near.corrector
-    for number, (axis, sign) in enumerate(((0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0))):
-        of_side = moved[..., bonds.side == number]
-        expected = np.zeros((3, 4))
-        expected[axis, axis] = sign  # xx or yy
-        expected[1 - axis, 2:] = sign  # xy and yx
-        np.testing.assert_allclose(of_side, np.broadcast_to(expected[..., None], of_side.shape), atol=1e-12)
-    tied.wall = Wall.of(tied.mesh, far, 0.0)
-    x, y = np.vstack([tied.body.positions, tied.mesh.positions]).T
-    u = np.random.default_rng(4).normal(size=(3, tied.count))
-    turned = np.stack([-y, x, np.ones_like(x)])
-    assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(tied.forces(12.0 * u)).max()
-
-
 def test_a_twin_leaves_what_the_particle_has_beyond_it_and_velocities_count_times_the_lag(ground) -> None:
     """Forces are added to existing ones, at the lines of the support table; none act on the twins."""
     tied, rng = Tied(ground), np.random.default_rng(5)
@@ -137,21 +118,3 @@ def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
     made = square()
     # half bonds of 2K with K = ρc_p²: η·2K = 0.3 ρc_pD
     assert lag_of(made, 0.3) * 2.0 * made.stiffness.normal[0] == pytest.approx(0.3 * 2500.0 * 1000.0 * 0.5)
-
-
-def test_elongations_times_stiffness_are_the_forces_of_the_kernels(ground) -> None:
-    """For any motion; forces on disks and nodes by the transpose."""
-    tied = Tied(ground)
-    wall, u = tied.wall, np.random.default_rng(4).standard_normal((3, tied.count))
-    of_disks, of_nodes = wall.elongations
-    disks, nodes = wall.bonds.particle, tied.particles + tied.mesh.nodes[wall.element].reshape(len(wall.element), -1)
-    pull = wall.bonds.stiffness * (
-        np.einsum("etc,ct->et", of_disks, u[:, disks]) + np.einsum("etcq,ctq->et", of_nodes, u[:2][:, nodes])
-    )
-    expected = np.zeros((tied.count, 3))
-    np.add.at(expected, disks, -np.einsum("etc,et->tc", of_disks, pull))
-    np.add.at(expected[:, :2], nodes, -np.einsum("etcq,et->tqc", of_nodes, pull))
-    force = np.zeros_like(expected)
-    energy = tie_forces(tied.ties(), u, np.zeros_like(u), force, 0.0)
-    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
-    assert energy == pytest.approx(-0.5 * np.sum(u.T * expected), rel=1e-12)

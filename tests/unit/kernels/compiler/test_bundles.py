@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from numba import config, njit
 
-from dembound.kernels.calls import Given, Motion, entered
 from dembound.kernels.common import FAST, MAKES
-from dembound.kernels.compiler.bundles import Written, kind_of
-from dembound.kernels.tables import NO_SIDES, Body, Bonded, Cells, Contacts, Log, Supports
+from dembound.kernels.tables import Bonded, Cells, Contacts
 from dembound.laws.elastic import Limits
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
@@ -52,42 +50,3 @@ def test_compiled_code_reads_and_writes_what_is_in_a_bundle(options) -> None:
     assert WORK[0].tolist() == [0.0, 4.0]
     assert read(bonded(stops=False, skin=3.0))[7:11] == [3.0, 0.25, 1.0, 0.0]
     assert len(kernel.signatures) == 1
-
-
-def test_only_what_has_changed_is_written_and_nothing_of_another_type() -> None:
-    law = bonded()
-    written = Written(law)
-    address, numbers = written.address, written.numbers.copy()
-    assert written.takes(law._replace(skin=3.0))
-    (changed,) = np.flatnonzero(written.numbers != numbers)
-    assert written.numbers[changed] == np.float64(3.0).view(np.int64)
-    assert written.address == address
-
-    for other in (
-        law._replace(skin=1),
-        law._replace(way=law.way.astype(np.float32)),
-        law._replace(origin=np.zeros((2, 3))),
-        law._replace(origin=np.zeros((3, 2)).T),
-        law._replace(damped=np.zeros((2, 2))[:, ::2]),
-        law._replace(contacts=law.contacts._replace(slip=np.zeros((1, 2)))),
-        law.limits,
-    ):
-        before = written.numbers.copy()
-        assert kind_of(other) != kind_of(law)
-        assert not written.takes(other)
-        np.testing.assert_array_equal(written.numbers, before)
-
-
-def test_the_loop_refuses_motion_of_another_type() -> None:
-    row, value, none, layer = np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))
-    body = Body(value, value, value, row, 0.0, 0.0)
-    supports = Supports(none, row, row, row, row, row, layer, none, row)
-    log = Log(none, layer, none, layer, value, row, value, NO_SIDES)
-    good = Motion(row, row, row)
-    assert len(entered((), (), (), (good, good), Given.by(body, supports, log), {})) == 5
-    for motion, given in (
-        (good._replace(v=np.zeros((2, 3)).T), Given.by(body, supports, log)),
-        (good, Given.by(body._replace(damp=0), supports, log)),
-    ):
-        with pytest.raises(TypeError, match="the loop takes"):
-            entered((), (), (), (good, motion), given, {})

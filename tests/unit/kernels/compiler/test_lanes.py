@@ -1,7 +1,6 @@
 """Lanes compute in compiled code what their Python lines compute, on processors of all kinds, and without compiling."""
 
 import os
-import platform
 import subprocess
 import sys
 from collections.abc import Callable
@@ -104,12 +103,6 @@ scene = build(case(
 assert not scene.layout.is_plain
 """
 
-FORCES = """
-u = scene.layout.spread(np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count)))
-result = np.zeros_like(u)
-contact_forces(u, scene.rows[0], result)
-"""
-
 MOTION = """
 from grid_scene import GridScene
 from dembound.continuum.part import GridBody
@@ -129,9 +122,6 @@ simulation.state.velocity = noise
 simulation.run(3)
 result = np.hstack([of_disks / np.abs(of_disks).max(), simulation.state.velocity])
 """
-
-FEATURES = {"haswell": "+avx2,+fma", "x86-64": "+sse2"}
-"""Two kinds of x86 processors: instructions for four doubles with fused multiply-adds, and for two without."""
 
 
 def here(code: str) -> np.ndarray:
@@ -155,15 +145,3 @@ def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
 def test_kernels_run_without_being_compiled(tmp_path) -> None:
     """Disks and a continuum at speeds of 1; some ten sums a step, which fused multiply-adds round otherwise."""
     np.testing.assert_allclose(elsewhere(MOTION, tmp_path, NUMBA_DISABLE_JIT="1"), here(MOTION), rtol=0.0, atol=1e-13)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names of x86 processors")
-@pytest.mark.parametrize("processor", ["haswell", "x86-64"])
-def test_other_processors_compute_the_same(tmp_path, processor: str) -> None:
-    features = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": FEATURES[processor]}
-    found, expected = elsewhere(FORCES, tmp_path, **features), here(FORCES)
-
-    assert np.abs(found).max() > 0.0
-    # some ten sums of products
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * np.abs(found).max())

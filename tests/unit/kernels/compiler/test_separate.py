@@ -1,9 +1,5 @@
 """Kernels compiled apart: called and not copied, compiled when they are first called, shared out among threads."""
 
-import os
-import subprocess
-import sys
-
 import numba
 import numpy as np
 import pytest
@@ -71,83 +67,3 @@ def test_each_chunk_is_computed_once_by_any_number_of_threads(count) -> None:
     _number(0.5, chunks, threads)  # called from Python, by no thread but this
     np.testing.assert_array_equal(chunks, 1.5 * (1.0 + np.arange(CHUNKS)))
     assert set(threads) == {0}
-
-
-@apart()
-@njit(**OWN)
-def _returns(values):
-    return values[0]
-
-
-@njit(**OWN)
-def _calls(values):
-    _returns(values)
-
-
-def test_a_kernel_that_cannot_be_compiled_as_declared_raises_in_its_caller(capsys) -> None:
-    with pytest.raises(RuntimeError, match=r"_returns was not compiled"):
-        _calls(np.zeros(1))
-    assert "_returns returns float64, not none" in capsys.readouterr().err
-
-
-MODULE = """
-from numba import njit, types
-from dembound.kernels.compiler.separate import apart, in_chunks
-from dembound.kernels.common import FAST
-
-@apart(types.float64)
-@njit(**FAST)
-def largest(values, least):
-    most = least
-    for i in range(values.size):
-        if values[i] > most:
-            most = values[i]
-    return most
-
-@in_chunks
-@njit(**FAST)
-def add(first, last, values):
-    for i in range(first, last):
-        if i < values.size:
-            values[i] += 1.0
-
-@njit(**FAST)
-def between(values, more):
-    if more:
-        add(values)
-    return 10.0 * largest(values, 0.5)
-
-@njit(**FAST)
-def caller(values, more):
-    return 1.0 + between(values, more)
-"""
-
-CALLED = """
-import sys
-import numpy as np, kept
-from numba.core import event
-with event.install_recorder("numba:compile") as compiled:
-    print(kept.caller(np.array([2.0, 7.0]), "more" in sys.argv), kept.caller(np.array([0.25]), False))
-print(*sorted(e.data["dispatcher"].py_func.__name__ for _, e in compiled.buffer if e.is_start))
-"""
-
-
-def test_only_what_is_called_is_compiled_and_callers_that_are_loaded_find_it(tmp_path) -> None:
-    (tmp_path / "kept.py").write_text(MODULE)
-
-    def printed(*words: str) -> list[str]:
-        importable = os.pathsep.join([str(tmp_path), *sys.path])
-        folders = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": importable}
-        command = [sys.executable, "-c", CALLED, *words]
-        done = subprocess.run(command, env=os.environ | folders, capture_output=True, text=True, check=True)
-        return done.stdout.splitlines()
-
-    def forget(name: str) -> None:
-        for file in (tmp_path / "cache").rglob(f"kept.{name}*"):
-            file.unlink()
-
-    assert printed() == ["71.0 6.0", "between caller largest"]
-    forget("caller")
-    assert printed() == ["71.0 6.0", "caller"]  # from another one that was loaded
-    forget("largest")
-    assert printed("more") == ["81.0 6.0", "add largest"]  # when they are called

@@ -1,6 +1,5 @@
 """Facts about a bar's case."""
 
-import numpy as np
 import pytest
 
 from dembound.bar.scene import build_bar
@@ -37,14 +36,6 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
     assert facts.items() >= expected.items()
 
 
-def test_what_a_bar_lacks_is_not_reported(spalling) -> None:
-    bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
-    facts = facts_of(spalling({"bar": bar, "monitor": [], "load": []}))
-
-    assert facts["strength"] == "unbreakable"
-    assert not {"attenuation", "load hit", "monitor gauge", "cracks", "strain rates"} & set(facts)
-
-
 def test_a_layer_is_reported_with_its_length_and_what_it_returns(spalling) -> None:
     method = {"type": "finite_difference"}
     case = spalling({"boundary.right": {"type": "matched_layer", "nodes": 80}, "method": method, "run.courant": 0.5})
@@ -53,13 +44,6 @@ def test_a_layer_is_reported_with_its_length_and_what_it_returns(spalling) -> No
     assert echo.startswith("returns at most ")
     assert echo.endswith(" of wave hit")
     assert 1e-9 < float(echo.split()[3]) < 1e-4
-
-
-def test_the_largest_pressure_is_reported_whatever_a_wave_reaches(spalling) -> None:
-    load = {"name": "hit", "pressure": -1.0, "side": "right", "wave": "hit"}
-    facts = facts_of(spalling({"load": [load], "wave.hit.amplitude": 9e6}))
-
-    assert facts["load hit"] == "up to 9 MPa: -1 Pa times wave hit, on 1 node at the right end"
 
 
 def test_cells_in_the_shortest_wavelength(spalling) -> None:
@@ -75,14 +59,3 @@ def test_cells_in_the_shortest_wavelength(spalling) -> None:
     # ends make a bar stable a little beyond the limit of an endless one, for which cells are counted
     step = courant_limit(3) * (1.0 + 1e-6) * 0.025 / 1000.0
     assert cells_of_waves(build_bar(spalling()), step)["hit"][1] == cells_per_wavelength(3, courant_limit(3), 0.01)
-
-
-def test_waves_count_where_they_load_the_bar_or_enter_it(spalling) -> None:
-    short = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
-    entrance = {"type": "viscous_input", "wave_p": "in"}
-    steady = {"type": "constant", "amplitude": 1.0}  # without a highest frequency, it is never long enough
-    case = spalling({"boundary.left": entrance, "wave.in": short, "wave.spare": short, "wave.hit": steady})
-    cells = cells_of_waves(build_bar(case), 2e-5)
-
-    assert set(cells) == {"hit", "in"}
-    assert cells["hit"][0] == 0.0 < cells["hit"][1] < np.inf

@@ -5,11 +5,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from dembound.bar.part import BarPart
 from dembound.kinds.bar.kind import Bars
-from dembound.results.reader import text_of
 from dembound.results.vtk import write_paraview
-from dembound.running import run_case
 
 
 @pytest.fixture(scope="module")
@@ -54,22 +51,3 @@ def test_lines_join_neighbours_and_know_how_many_bonds_across_them_have_broken(s
             np.testing.assert_array_equal(mesh.cell_data["brokenBonds"], counted)
             totals.append(sum(counted))
     assert totals[0] == 0 < totals[-1]
-
-
-def test_a_field_that_a_part_gives_is_in_the_record_and_in_the_files(spalling, tmp_path, monkeypatch):
-    """Numbers, vectors and tensors, with no other place that knows them."""
-    count, given = 41, BarPart.snapshot
-    numbers = {"heat": np.arange(count) * 0.5, "flux": np.ones((count, 2)), "couple": np.full((count, 3), [1.0, 2, 3])}
-    units = {name: (values, "W") for name, values in numbers.items()}
-    monkeypatch.setattr(BarPart, "snapshot", lambda part, moved: given(part, moved) | units)
-    folder = run_case(spalling({"output": {"snapshots": 1, "pictures": False}}), tmp_path)
-
-    mesh = pyvista.read(next(iter(sorted(folder.glob("paraview/bar_*.vtu")))))
-    np.testing.assert_array_equal(mesh.point_data["heat"], numbers["heat"])
-    np.testing.assert_array_equal(mesh.point_data["flux"], [[1.0, 1.0, 0.0]] * count)
-    np.testing.assert_array_equal(mesh.point_data["couple"], [[1.0, 2.0, 0.0, 3.0, 0.0, 0.0]] * count)
-    with h5py.File(folder / "run.h5") as file:
-        for name, values in numbers.items():
-            field = file[f"snapshots/0000/{name}"]
-            np.testing.assert_array_equal(field[:], values)
-            assert text_of(field.attrs["unit"]) == "W"

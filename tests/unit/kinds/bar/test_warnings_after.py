@@ -1,17 +1,14 @@
 """Warnings about probable mistakes in a bar's case, after the run."""
 
 import json
-import shutil
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
 from small_cases import SPALLING, small
 
 from dembound.bar.scene import build_bar
 from dembound.kinds.bar.warnings_after import warnings_after_bar
-from dembound.results.warnings import still_moving
 from dembound.running import resume_case, run_case
 
 
@@ -65,8 +62,6 @@ def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:
     tables = {"bar": bar, "method": SPALLING["method"], "run": {"duration": 1e-4}, "output": {"pictures": False}}
     folder = run_case(small(tables), tmp_path)
     assert _summary(folder)["open_contacts"] == ["rod", "far"]
-    folder = resume_case(folder, until=3e-4)
-    assert _summary(folder)["open_contacts"] == ["far"]
     folder = resume_case(folder, until=2e-3)  # the striker is back, and its contact open again
     assert _summary(folder)["open_contacts"] == ["far"]
     (line,) = (line for line in _summary(folder)["warnings"] if "contact" in line)
@@ -92,13 +87,10 @@ OTHER_SIGN = "change the sign of load.blow.pressure if it is to push"
     ("side", "load", "speed", "changes", "key", "what", "cure"),
     [
         ("left", 9e7, None, {}, "load.blow", "load itself", "give load.blow.nodes = 3"),
-        ("right", 9e7, None, {}, "load.blow", "load itself", "give load.blow.nodes = 3"),
         # peridynamics swings behind a front shorter than its horizon
         ("left", None, 10.0, LONG_BONDS, "boundary", "incoming wave itself", FINER),
-        ("left", -3e7, None, {"wave.hit.amplitude": 1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
         ("right", 3e7, None, {"wave.hit.amplitude": -1.0}, "load.blow", "load pulls, with ", OTHER_SIGN),
         ("left", None, -10.0, {}, "boundary", "incoming wave pulls, with ", PUSHES),
-        ("right", None, -10.0, {}, "boundary", "incoming wave pulls, with ", PUSHES),
     ],
 )
 def test_what_tears_the_end_where_it_enters_is_warned_of(run, side, load, speed, changes, key, what, cure) -> None:
@@ -119,10 +111,8 @@ def spall(time: float, start: list[float]) -> dict:
     ("side", "place", "time", "warned"),
     [
         ("left", 0.07, 1e-4, True),
-        ("left", 0.08, 1e-4, False),  # beyond the horizon, which is 0.075 m
         ("left", 0.0, 1.99e-3, True),
         ("left", 0.0, 2.01e-3, False),  # the wave is back from the free end
-        ("right", 0.07, 1e-4, True),
         ("right", 0.08, 1e-4, False),
     ],
 )
@@ -154,23 +144,6 @@ def test_a_bar_that_nothing_pulls_is_warned_of(spalling, tmp_path) -> None:
     assert after(spalling({**FIRM, "bar": unbroken}), folder) == []
 
 
-@pytest.mark.parametrize("changes", [{"run.duration": 5e-4}, blow(5.0, 3)], ids=["too short", "too weak"])
-def test_what_was_known_before_the_run_is_not_reported_again(run, changes: dict) -> None:
-    assert run({"method": {"type": "finite_difference"}, **changes}) == []
-
-
-def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_run, tmp_path) -> None:
-    path = Path(shutil.copy(spalled_run, tmp_path / "run.h5"))
-    with h5py.File(path, "r+") as file:
-        velocity = file["histories/gauge/velocity"]
-        velocity[:, 0] = np.linspace(0.0, 1.0, len(velocity)) ** 4
-    scene = build_bar(spalling({"boundary.left": {"type": "viscous"}}))
-    there = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
-    for where, warned in ((there, True), ({**there, "end": [0.3, 0.4]}, False)):
-        found = warnings_after_bar(scene, summary_of(where, duration=1.5e-3), path)
-        assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]
-
-
 @pytest.mark.parametrize(("rates", "beyond"), [([1e-3, 2e-3], "above 0.002"), ([1e4, 2e4], "below 10000")])
 def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: list[float], beyond: str) -> None:
     law = {"bar.fracture_energy": 2e3, "bar.strength_per_decade": 1e3, "bar.strength_rates": rates}
@@ -179,15 +152,3 @@ def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: lis
 
     assert warning.startswith("bar.strength_rates: cracks had strain rates of ")
     assert f"{beyond}; the strength is constant there" in warning
-
-
-def test_a_forerunner_beside_the_motion_of_the_body_is_no_motion(tmp_path) -> None:
-    """The only monitor has a growing velocity of 1e-13 m/s while the body moves, which a longer run would not end."""
-    end = {"right": {"type": "viscous"}}
-    scene = build_bar(small(SPALLING | {"boundary": end, "monitor": [{"name": "far", "position": 1.0}]}))
-    with h5py.File(tmp_path / "run.h5", "w") as file:
-        file["histories/far/velocity"] = np.outer(np.linspace(0.0, 1e-13, 100), [1.0, 0.0, 0.0])
-        pieces = np.zeros(scene.count, dtype=np.int64)
-        assert list(still_moving(scene, 1e-4, file, pieces))  # without a ledger nothing larger is known
-        file["energy/kinetic"] = np.array([0.0, 1.0])
-        assert list(still_moving(scene, 1e-4, file, pieces)) == []

@@ -8,8 +8,8 @@ from disk_systems import LAMB
 
 from dembound.disks.material.packing_waves import sent_back
 from dembound.disks.scene import build
-from dembound.disks.surroundings.near_fields import signals_of
-from dembound.formulas.disks.continuum import expected_errors, lattice_errors
+from dembound.disks.surroundings.settings import signals_of
+from dembound.formulas.disks.continuum import expected_errors
 from dembound.kinds import with_changes
 from dembound.kinds.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.words import percent
@@ -53,17 +53,6 @@ def test_reflections_are_those_of_the_profile(case) -> None:
     for found, slower in ((p, 1.0), (s, np.sqrt(2.0))):
         expected = 100.0 * 1e-4 ** (np.cos(np.radians(ANGLES)) * slower)
         assert [float(each) for each in found.split(",")] == pytest.approx(expected, rel=0.05)
-
-
-def test_ties_return_what_a_half_bond_does(case) -> None:
-    """For one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
-    burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
-    scene = build(with_changes(case, {"wave": burst}))
-    k = 2.0 * np.pi / 80.0
-
-    ties, across = lattice_errors(scene, signals_of(scene.case))
-    assert ties == pytest.approx((1.0 / 16.0 + 0.1 / 8.0 / np.sqrt(2.0)) * k**2, rel=0.03)
-    assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
 
 
 def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
@@ -124,43 +113,6 @@ def test_a_margin_too_small_below_the_surface(case) -> None:
     assert line.endswith(" elements are enough")
 
 
-LAYERS = {"layer": [{"thickness": 6.0, "density": 1800.0, "s_wave_speed": 350.0}, {}], "outside.accuracy": 0.01}
-
-
-def test_layers_have_their_own_points_and_depths(case) -> None:
-    """Elements in the lower layer are taller, with as many nodes to its longer waves; five wide ones absorb beside."""
-    facts = facts_of(case, **LAYERS)
-    outside = build(with_changes(case, LAYERS)).outside
-
-    nodes = [float(each) for each in re.match(r"([\d.]+), ([\d.]+) nodes", facts["continuum waves"]).groups()]
-    assert min(nodes) >= 6.0
-    begin, deep = (
-        outside.body.mesh.axes[0].sizes[0] / 3.0,
-        sum(outside.body.mesh.widths[: len(outside.settings.beside)]),
-    )
-    assert facts["absorbing layers"].startswith(f"begin {begin:.4g}")
-    assert f"are {deep:.4g}" in facts["absorbing layers"]
-    assert f"elements ({len(outside.settings.beside)} left and right)" in facts["absorbing layers"]
-    assert warnings_of(case, **LAYERS) == []
-
-
-def test_a_low_row_of_elements_has_a_warning(case) -> None:
-    thin = LAYERS | {"layer": [{"thickness": 8.0}, {"name": "seam", "thickness": 2.0}, {}]}
-    (line,) = warnings_of(case, **thin)
-    assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
-
-
-def test_elements_too_large_beside_a_load(case) -> None:
-    slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
-    near = {"load": [{"name": "f", "position": [20.5, 4.5], "force": [0.0, -1e6], "wave": "pulse"}]}
-
-    assert warnings_of(case, **slow) == []
-    (line,) = warnings_of(case, **slow, **near)
-    assert line.startswith(
-        "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
-    )
-
-
 def test_layers_of_strongly_anisotropic_ground(case) -> None:
     """They return more, which is said, and no formula says how much; one lattice below others is enough."""
     shear = {"material.kratio": 0.1, "material.pb_kratio": 0.1}
@@ -169,23 +121,3 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
     assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
     assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
-
-    mild = {"material.kratio": 0.5, "material.pb_kratio": 0.5}
-    assert "they return at most" in facts_of(case, **mild)["absorbing layers"]
-    below = {"layer": [{"thickness": 6.0}, shear_of_layer(0.1)]}
-    assert "they stretch both axes" in facts_of(case, **below)["absorbing layers"]
-
-
-def shear_of_layer(ratio: float) -> dict[str, float]:
-    """A layer with this ratio of stiffness."""
-    return {"kratio": ratio, "pb_kratio": ratio}
-
-
-def test_against_growth_is_what_helps(case) -> None:
-    """Elastic ground is stepped below its limit, so that no smaller step helps; bonds that break may need one."""
-    scene = build(case)
-    assert "smaller run.safety" not in scene.against_growth
-    assert 'another type than "outside"' in scene.against_growth
-    breaks = build(with_changes(case, {"material.law": "linearpbond"}))
-    assert breaks.against_growth == f"{scene.against_growth}, or a smaller run.safety or run.time_step"
-    assert build(with_changes(case, {"boundary": {}})).against_growth == "a smaller run.safety or run.time_step"

@@ -1,6 +1,5 @@
 """A wave at an angle in words, in monitors and in snapshots."""
 
-import numpy as np
 import pytest
 from small_cases import SURROUNDED, small
 
@@ -16,7 +15,7 @@ CASE = SURROUNDED | {
 
 
 def test_facts_of_the_waves() -> None:
-    """s_x = sin 30°/c_s = 1/1414 s/m, |A| as in test_plane_waves.py; at the first disk, (0.5, 0.5) m, 0.97 ms later."""
+    """s_x = sin 30°/c_s = 1/1414 s/m, |A| as at a free surface; at the first disk, (0.5, 0.5) m, 0.97 ms later."""
     facts = dict(incident_facts(build(small(CASE))))
 
     assert facts["incident wave"].startswith("SV, 30° from the vertical to the right, with the velocity of wave pulse")
@@ -35,29 +34,14 @@ def test_facts_of_the_waves() -> None:
             ("SV, straight up, with the velocity of wave pulse at (0, 0) m; ",),
             "SV at 0° with 1 of the amplitude; critical from 45° on",
         ),
-        ({"incident.type": "p"}, (), "; no critical angle"),
         (
             {"boundary.top": {"type": "outside"}},
             ("at (0, 0) m, at 1414.2 m/s along x; reaches",),
             "none, as the ground has no surface",
         ),
-        ({"incident.point": [1.0, -2.0]}, ("at (1, -2) m",), ""),
     ],
 )
 def test_other_waves_are_reported(changes, wave: tuple[str, ...], reflected: str) -> None:
     facts = dict(incident_facts(build(small(CASE, changes=changes))))
     assert all(words in facts["incident wave"] for words in wave)
     assert reflected in facts["reflected waves"]
-
-
-def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one() -> None:
-    scene = build(small(CASE))
-    values = np.random.default_rng(1).normal(size=(scene.count, 3))
-    motion = scene.beside.motion(values, "velocity", 0.03)
-
-    assert np.array_equal(motion["scattered_"], values[scene.beside.nodes])
-    ground = motion[""] - motion["scattered_"]
-    expected = scene.ground_waves.motion("velocity", np.array([0.03]), scene.positions[scene.beside.nodes])[0]
-    np.testing.assert_allclose(ground, expected, atol=1e-12)
-    assert np.abs(ground).max() > 0.01
-    assert scene.beside.columns["total"][0].all()

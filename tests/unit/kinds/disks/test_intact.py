@@ -8,7 +8,6 @@ from small_cases import GRAINS, small
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
 from dembound.kinds.disks.intact import creep, intact_facts, intact_warnings
-from dembound.kinds.disks.summary import disk_outcome
 
 WEIGHT = {"name": "weight", "acceleration": [0.0, -9.81]}
 BOTTOM = {"type": "viscous_input", "wave_s": "pulse"}
@@ -67,21 +66,6 @@ def test_a_load_that_lasts_creeps_on_dashpots_and_the_weight_that_leaves_too() -
     assert len(lasting) == 2
 
 
-@pytest.mark.parametrize(
-    "boundary",
-    [
-        FREE_FIELD | {"bottom": BOTTOM},  # springs to the column
-        VISCOUS | {"bottom": {"type": "fixed"}},
-        VISCOUS | {"bottom": {"type": "viscoelastic_input", "wave_s": "pulse", "distance": 9.0}},
-        {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-    ],
-)
-def test_what_is_held_does_not_creep(boundary) -> None:
-    body = scene(boundary, load=[WEIGHT, PUSH], wave=WAVES, static={"boundary": {"bottom": {"type": "fixed"}}})
-    assert creep(body, 1) is None
-    assert not any("y:" in said or "weight" in said for said in intact_warnings(body))
-
-
 FOUND = {
     "work": {"size": 0.06, "side": "left", "time": 0.5},
     "turn": {"size": 0.2, "side": "right", "time": 0.25},
@@ -108,15 +92,3 @@ def test_sides_that_cracks_would_have_reached_are_named_in_one_line() -> None:
         "the free-field column (at least 1 bond, from t = 0.5 s), whose bonds do not break"
     )
     assert list(reach_warnings(None)) == list(reach_warnings({"reached": {}})) == []
-
-
-def test_the_error_of_the_ledger_never_stands_alone_where_forces_at_rest_did_much() -> None:
-    summary = {"static": None, "reduced": [], "not_reduced": [], "load_factor": None, "has_history": True}
-    summary |= {"laws": [{"law": "elastic", "from": 0.0}], "cracks": {"tension": 0, "shear": 0}}
-    summary |= {"energy": {"relative_error": 1e-7}, "forces_at_rest": FOUND}
-    assert disk_outcome(summary)[-1] == (
-        "largest error of the energy balance: 1e-05 %; forces at rest did 6 % of what came in or was stored, on ground "
-        "that left its side"
-    )
-    little = FOUND | {"work": {"size": 0.05, "side": "left", "time": 0.5}}
-    assert disk_outcome(summary | {"forces_at_rest": little})[-1] == "largest error of the energy balance: 1e-05 %"

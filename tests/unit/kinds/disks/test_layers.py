@@ -6,25 +6,15 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
-from readable import drawn_quickly
-from small_cases import GRAINS, small
+from small_cases import small
 from warned_cases import warned
 
 from dembound import api
-from dembound.disks.material.packing_waves import front_of
-from dembound.disks.memory import SceneSizes
 from dembound.disks.scene import build
-from dembound.disks.sources import sources_of
-from dembound.disks.stability import step_limit
-from dembound.disks.supports import forces_of
-from dembound.disks.trials import trials_of_disks
-from dembound.formulas.disks.coarse_grid import Grid, undisturbed
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
-from dembound.kinds.disks.summary import describe_layers, describe_side
-from dembound.kinds.disks.wave_warnings import strong_waves
+from dembound.kinds.disks.summary import describe_layers
 from dembound.plot.scene import plot_scene
-from dembound.report import page
 from dembound.results.vtk import write_paraview
 
 LAYERS = [
@@ -68,17 +58,6 @@ def test_each_layer_has_its_heights_speeds_and_disks_in_a_wavelength() -> None:
     assert dict(disk_facts(above))["layer rock"].startswith("y = -11 to -20 m, ")
 
 
-def test_waves_start_in_the_lowest_layer_and_are_as_fast_as_in_the_fastest() -> None:
-    scene = build(soil())
-    assert strong_waves(scene)["pulse"].startswith("322 kPa, ")  # 2300 · 1400 · 0.1
-    assert front_of(scene.ground, 0.9).speed >= 1400.0
-    assert [source.slowest for source in sources_of(scene.case, scene.ground)] == pytest.approx([200.0])
-    law = {"law": "linearpbond", "fric": 0.5, "contact_share": 0.9}  # loose disks limit the step
-    stiff = step_limit(build(small({**SOIL, "layer": LAYERS[2:]}, changes={f"material.{k}": law[k] for k in law})))
-    limit = step_limit(build(soil(**{f"material__{key}": value for key, value in law.items()})))
-    assert limit == pytest.approx(stiff, rel=0.01)
-
-
 def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
     """S waves of rock are given as 300 m/s, and have 700; of all others as nothing."""
     rock = {"name": "rock", "density": 2300.0, "emod": 2.254e9, "pb_emod": 2.254e9, "s_wave_speed": 300.0}
@@ -92,58 +71,6 @@ def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
     moduli = {"density": 2000.0, "emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 300.0}
     inherited = warned(soil(material=moduli, layer=[{"thickness": 5.0, "density": 5500.0}, {"name": "b"}]))
     assert len([line for line in inherited if line.startswith("material.s_wave_speed: is 300 m/s")]) == 1
-
-
-def test_a_side_has_factors_by_layer() -> None:
-    """Those of random disks differ, as the sums of their diameters do."""
-    packing = GRAINS["packing"] | {"size": [8.0, 20.0], "origin": [0.0, -20.0]}
-    scene = build(soil(packing=packing))
-    layers = describe_side(scene, "left")["layers"]
-    assert [layer["layer"] for layer in layers] == ["rock", "sand", "clay"]
-    positions, diameters = scene.edges["left"].positions, scene.edges["left"].diameters
-    own = positions[:, 1] > -5.0
-    nominal = LAYERS[0]["p_wave_speed"]
-    speed = scene.ground.at(-1.0).wave_speeds(0)[0]
-    assert layers[2]["beta_p"] == pytest.approx(speed / nominal * 5.0 / diameters[own].sum(), rel=1e-9)
-    assert f"β_P = {layers[2]['beta_p']:g} (matched), " in dict(disk_facts(scene))["left side"].split(" beside clay")[0]
-
-
-def test_ground_beside_sides_is_in_layers() -> None:
-    """A short wave passes two joints with 2Z₁/(Z₁ + Z₂) of its amplitude each, and the surface doubles it."""
-    grid = Grid.of(build(soil(wave__pulse__period=0.02)), 1)
-    step = grid.time_step
-    times = step * np.arange(int(0.09 / step))  # before anything comes back from a joint
-    incoming = np.zeros((len(times), 2))
-    incoming[:, 0] = np.where(times < 0.02, 0.5 - 0.5 * np.cos(100.0 * np.pi * times), 0.0)
-    moved = undisturbed(grid, "bottom", incoming, np.zeros_like(incoming), step)
-    rock, sand, clay = 2300.0 * 700.0, 2000.0 * 350.0, 1800.0 * 200.0
-    expected = 2.0 * (2.0 * rock / (rock + sand)) * (2.0 * sand / (sand + clay))
-    assert moved.v[:, -1, 0].max() == pytest.approx(expected, rel=0.02)
-
-
-def test_a_pressure_on_bonds_is_that_of_the_layer() -> None:
-    hole = {"name": "h", "type": "circle", "centre": [4.0, -11.0], "radius": 2.3}
-    load = {"name": "p", "pressure": 1e5, "hole": "h", "on": "bonds"}
-    packing = GRAINS["packing"] | {"size": [8.0, 20.0], "origin": [0.0, -20.0]}
-    layers = [*LAYERS[:2], LAYERS[2] | {"kratio": 4.0, "pb_kratio": 4.0}]
-    case = soil(packing=packing, hole=[hole], load=[load], layer=layers)
-    scene = build(case)
-    nodes, forces = forces_of(case.load[0], scene)
-    above = scene.positions[nodes, 1] > -11.0
-    for height, chosen in ((-10.0, above), (-12.0, ~above)):
-        alone = build(case.uniform_at(height))
-        same, own = forces_of(case.load[0], alone)
-        np.testing.assert_array_equal(same, nodes)
-        np.testing.assert_allclose(forces[chosen], own[chosen], rtol=1e-9, atol=1e-6)
-
-
-def test_sizes_and_trials_are_those_of_layers() -> None:
-    case = soil(packing__size=[100.0, 20.0])
-    expected, found = SceneSizes.expected(case), build(case).sizes
-    assert expected.slots == pytest.approx(found.slots, rel=0.01)
-    (trial, *_), words = trials_of_disks(case, full=False)
-    assert "62 × 40 of its 200 × 40 bricks" in words[1]
-    assert trial.scene.case.joints == case.joints
 
 
 @pytest.fixture(scope="module")
@@ -171,12 +98,3 @@ def test_disks_have_their_layer_in_the_record_in_pictures_and_for_paraview(run, 
     assert {float(line.get_ydata()[0]) for line in panel.lines} == {-5.0, -11.0}
     names = {text.get_text(): text.xy[1] for text in panel.texts if text.get_text() in ("clay", "sand", "rock")}
     assert names == {"clay": pytest.approx(0.0), "sand": -5.0, "rock": -11.0}
-
-
-def test_a_page_has_a_table_of_layers(run, tmp_path, monkeypatch) -> None:
-    drawn_quickly(monkeypatch)
-    monkeypatch.setattr(page, "FRAME_DOTS", 30)
-    page.write_report([run], tmp_path / "page.html")
-    row = r'<th scope="row">(\w+)</th><td data-head="run">soil</td><td data-head="y">([^<]+)</td>'
-    rows = re.findall(row, (tmp_path / "page.html").read_text())
-    assert rows == [("clay", "0 to -5 m"), ("sand", "-5 to -11 m"), ("rock", "-11 to -20 m")]

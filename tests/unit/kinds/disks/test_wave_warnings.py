@@ -2,24 +2,11 @@
 
 import re
 
-import numpy as np
 import pytest
 from warned_cases import DENSE, SLOW, warned
 
-from dembound.disks.scene import build
-from dembound.kinds.disks.wave_warnings import particles_per_wavelength
-from dembound.running import plan
 from dembound.waves.wave import HANN_FADE
 from dembound.words import with_unit
-
-
-def test_particles_per_wavelength_at_the_waves_highest_frequency_and_slowest_speed(bar) -> None:
-    # c_s = c_p/2 = 500 m/s, the Hann lobe fades at 3.27/T, disks are 0.5 m apart
-    for held, speed in ((["rotation"], 1000.0 / np.sqrt(2.0)), ([], 500.0), (["y"], 500.0)):
-        scene = build(bar({"motion.held": held}))
-        found = particles_per_wavelength(scene)
-        assert found == {"pulse": pytest.approx(speed * 0.01 / HANN_FADE / 0.5, rel=1e-9)}
-
 
 TWO_WAYS = {"motion.held": []}
 BREAKABLE = {**SLOW, "material.law": "linearpbond", "material.pb_ten": 5e6}
@@ -29,7 +16,6 @@ GRIPPED = {"wave.pulse": {"type": "constant", "amplitude": 1e-6}, **BREAKABLE}
 S_WAVE = {"boundary.left": {"type": "viscous_input", "wave_s": "pulse"}, **TWO_WAYS, **BREAKABLE}
 TAP = {"name": "tap", "wave": "pulse"}
 PUSHING = TAP | {"acceleration": [1.0, 0.0]}
-WRAPPED = {"type": "periodic"}
 
 
 def of_wave(**keys: float) -> dict:
@@ -61,19 +47,13 @@ TEN = "of material.pb_ten, 5 MPa: Pa and MPa?"
 SUDDEN = STEP | {"boundary.left": GRIP} | lasting(1.01)
 TAPPED = {"load": [TAP | {"position": [5.0, 0.5], "force": [1.0, 0.0]}]}
 PRESSED = SLOW | TWO_WAYS | static(-1e6, -3e6, 0.5e6)
-FREE = {"type": "free"}
-ENDS = {"bottom": GRIP, "top": {"type": "fixed"}, "left": FREE, "right": FREE}
-UPRIGHT = GRIPPED | TWO_WAYS | {"boundary": ENDS}
 LIMITS = [
     # the mean frequency of a Hann lobe's energy, sin²πx/[πx(1 − x²)]² over x = fT, is 0.505/T
     (lasting(0.1), shortest(20.1), shortest(19.9), "has 19.9 particles in its shortest wavelength, fewer than 20"),
-    (lasting(0.01), {}, of_wave(period=1e-4), "has a shortest wavelength below the diameter of a particle"),
     # 20 disks of 0.5 m at 500 m/s, times 3.27
     (STEP, of_wave(rise=0.066), of_wave(rise=0.06), "rises within 0.06 s, which is shorter than the particles can "),
-    (STEP, of_wave(rise=0.066), {}, "is a step (rise = 0), which is shorter than the particles can follow, 0.065 s"),
     # a slow grip may start suddenly: at 1000 m/s, 100 ways of 10 m are 1 s; a load or a wave that enters may not
     (SUDDEN, {}, lasting(0.99), "is a step"),
-    (SUDDEN, {}, {"boundary.left.type": "viscous_input"}, "is a step"),
     (SUDDEN, {}, TAPPED, "is a step"),
     # the default locks in 10 MPa; ρcv = 2500·1000·v reaches that at 4 m/s; packings meet it within 0.05 %
     (DENSE, strong(3.99), strong(4.01), "has a stress ρcv of 10"),
@@ -84,14 +64,10 @@ LIMITS = [
     # ρc = 2.5e6 Pa·s/m
     (BREAKABLE, strong(2.02e-4), strong(1.98e-4), f"its stress ρcv is 495 Pa, 0.0099 % {TEN}"),
     (BREAKABLE, {"material.pb_ten": 1251.0}, {"material.pb_ten": 1249.0}, "its stress ρcv is 1.25 MPa, 1,001 times "),
-    # what has come to rest under 1 MPa is near its strength whatever the wave
-    (BREAKABLE | strong(1e-9), static(0.0, 1e6, 0.0), {}, "its stress ρcv is 0.0025 Pa"),
     # 2.5e6·1e-4 Pa as a P wave, half of that as an S wave; a wave that is both counts with the larger one
     (S_WAVE, strong(4.1e-4), strong(3.9e-4), "its stress ρcv is 48"),
-    (S_WAVE, strong(3e-4) | {"boundary.left.wave_p": "pulse"}, strong(3e-4), "its stress ρcv is"),
     # 2.5 Pa by ρcv, but 2 s of 1 µm/s strain 10 m by 2e-7, which is 500 Pa; along y 1 m
     (GRIPPED | {"boundary.left": GRIP}, lasting(2.1), lasting(1.9), f"its stress ρc²u/L is 475 Pa, 0.0095 % {TEN}"),
-    (UPRIGHT, lasting(0.21), lasting(0.19), f"its stress ρc²u/L is 475 Pa, 0.0095 % {TEN}"),
     # strains above 3 % of the elastic law, of velocities 1000 m/s
     (TWO_WAYS, strong(29.0), strong(50.0), "particles move at up to 50 m/s, P waves along x "),
 ]
@@ -104,11 +80,6 @@ def test_a_wave_beyond_a_limit_has_one_warning(bar, tables: dict, within: dict, 
     quiet, loud = ([line for line in warned(bar(tables | each)) if line.startswith(start)] for each in (within, beyond))
     assert quiet == []
     assert [line.removeprefix("wave.pulse: ")[: len(said)] for line in loud] == [said]
-
-
-def test_without_a_stress_or_a_strength_there_is_nothing_to_compare_with(bar) -> None:
-    for changes in (strong(4.0), strong(1e-9), {"material.law": "linearpbond"}):
-        assert warned(bar(SLOW | changes)) == []
 
 
 def test_steady_stresses_beside_strength_and_stiffness(bar) -> None:
@@ -128,17 +99,15 @@ FORCE, WEIGHT = "its force over the width it acts on", "its stress ρaL"
 @pytest.mark.parametrize(
     ("load", "what", "stress"),
     [
-        # 2 m of the height of 1 m count no more than that; of a wave its crest of either sign, here 4 and −1
+        # 2 m of the height of 1 m count no more than that; of a wave its crest of either sign, here 4
         ({"force": [100.0, 0.0], "region": [4.0, 0.0, 6.0, 1.0]}, FORCE, 400.0),
-        ({"force": [0.0, -100.0], "region": [4.0, 0.0, 6.0, 1.0]}, FORCE, 50.0),
         ({"force": [100.0, 0.0], "position": [5.0, 0.5]}, FORCE, 200.0),
         ({"acceleration": [0.01, 0.0]}, WEIGHT, 250.0),
-        ({"acceleration": [0.01, 0.0], "region": [4.0, 0.0, 6.0, 1.0]}, WEIGHT, 50.0),
     ],
     ids=str,
 )
 def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) -> None:
-    peak = {400.0: 4.0, 50.0: -1.0}.get(stress, 1.0)
+    peak = {400.0: 4.0}.get(stress, 1.0)
     free = TWO_WAYS | {"boundary.left": {"type": "viscous"}}
     for strength, weak in ((0.99e4 * stress, False), (1.01e4 * stress, True)):
         wave = strong(peak) | {"material.pb_ten": strength}
@@ -147,30 +116,13 @@ def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) ->
         assert warned(bar(BREAKABLE | free | wave | {"load": [TAP | load]})) == weak * [said]
 
 
-@pytest.mark.parametrize(("side", "axis"), [("left", 0), ("bottom", 1)])
-def test_a_wave_is_as_strong_as_its_speed_across_its_side(bar, side: str, axis: int) -> None:
-    moduli = {"density": 2500.0, "law": "linearpbond", "emod": 1.25e9, "pb_emod": 1.25e9, "pb_ten": 1e9}
-    packing = {key: DENSE[key] for key in ("packing", "monitor")}
-    driven = {"boundary": {side: {"type": "viscous_input", "wave_p": "pulse"}}, "motion.held": []}
-    case = bar({**packing, **SLOW, **driven, "material": moduli, "wave.pulse.amplitude": 1e-3})
-    tensor = plan(case).scene.ground.material_tensor
-    speeds = [float(np.sqrt(tensor[each, each] / 2500.0)) for each in (0, 1)]
-
-    # a random brick is not as stiff along x as along y
-    assert abs(speeds[1] / speeds[0] - 1.0) > 1e-3
-    (found,) = (each for each in warned(case) if "stress" in each)
-    assert found.startswith(f"wave.pulse: its stress ρcv is {with_unit(2500.0 * speeds[axis] * 1e-3, 'Pa')}, ")
-
-
 @pytest.mark.parametrize(
     ("changes", "is_doubted"),
     [
         (strong(4.9), False),  # the strongest motions recorded are slower
         (strong(5.1), True),
-        (strong(-5.1) | {"boundary.left": {"type": "velocity", "wave_p": "pulse"}}, True),
         (of_wave(amplitude=5.1, period=5e-3), False),  # a pulse of a laboratory
         (strong(5.1) | {"boundary.left": {"type": "free"}, "load": [PUSHING]}, False),  # of a load
-        (strong(40.0), False),  # v/c says so
     ],
     ids=str,
 )
@@ -188,14 +140,10 @@ HOLDS_Y = {"motion.held": ["y", "rotation"]}
     ("changes", "axis"),
     [
         ({"motion.held": ["x", "rotation"], "boundary.left": S_SIDE}, "x"),
-        ({"motion.held": TURNS, "boundary.left": S_SIDE}, "x"),
         ({"motion.held": TURNS}, "x"),  # a free body also bends under P waves
         (HOLDS_Y, None),  # P waves along a strip
-        (HOLDS_Y | {"load": [PUSHING | {"region": [4.0, 0.0, 6.0, 1.0]}]}, None),  # also of a load on its whole height
         (HOLDS_Y | {"load": [PUSHING | {"region": [4.0, 0.0, 6.0, 0.6]}]}, "y"),
         (HOLDS_Y | {"boundary.bottom": {"type": "fixed"}}, "y"),
-        ({"motion.held": TURNS, "boundary.bottom": WRAPPED, "boundary.top": WRAPPED}, None),
-        ({"motion.held": TURNS, "boundary.bottom": WRAPPED, "boundary.top": WRAPPED, "boundary.left": S_SIDE}, "x"),
         ({"motion.held": [], "boundary.left": S_SIDE}, None),
     ],
     ids=str,
