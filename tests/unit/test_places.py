@@ -1,4 +1,4 @@
-"""What lies on an edge is decided as by whole numbers, whatever the shape, the mirror, the place and the radius."""
+"""What lies on an edge, and which of equally near points is meant, is decided as by whole numbers."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Fourier spectra and their smoothing."""
+"""Fourier spectra and their smoothing, response spectra, and transfer functions."""
 
 import numpy as np
 import pytest

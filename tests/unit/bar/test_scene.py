@@ -1,4 +1,4 @@
-"""A bar's case as a scene: nodes, masses, ends, loads and limits."""
+"""A bar's case as a scene: nodes, masses, ends, loads, and the wave that enters."""
 
 import numpy as np
 import pytest

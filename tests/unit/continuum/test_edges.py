@@ -1,4 +1,4 @@
-"""The outer edges of meshes: lengths, and which of them are free."""
+"""The outer edges of meshes: lengths, which of them are free, and tractions on them."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ from meshes import ORDER, below, buried
 
 from dembound.continuum.edges import edge_lengths, free_edges, traction_in
 from dembound.continuum.mesh import Around, Mesh
+from dembound.table import EVERYWHERE
 
 
 @pytest.mark.parametrize(("side", "length"), [("left", 6.0), ("right", 6.0), ("bottom", 18.0), ("top", 12.0)])
@@ -83,3 +84,27 @@ def test_layers_are_not_loaded() -> None:
     assert traction.absorbs
     assert mesh.positions[traction.node, 0].max() == 15.0
     assert traction_in(mesh, (-9.0, -6.0, 18.0, -1.5)).absorbs is False  # outer edges of layers are held
+
+
+def test_the_ground_may_end_above_the_surface_of_the_mesh() -> None:
+    """The skin is not a part of the mesh: a region with either of both has the surface."""
+    mesh, depth = ground(), {"top": 0.4}
+
+    for bottom, top in ((2.3, 2.4), (1.7, 2.1), (1.0, 3.0)):
+        traction = traction_in(mesh, (7.0, bottom, 11.0, top), depth)
+        assert traction.length == pytest.approx(4.0, rel=1e-12)
+    assert traction_in(mesh, (7.0, 2.41, 11.0, 3.0), depth).length == 0.0
+    assert traction_in(mesh, (7.0, 2.1, 11.0, 2.4)).length == 0.0
+    assert traction_in(mesh, (7.0, 1.0, 11.0, 1.9), depth).length == 0.0
+
+
+def test_mirror_planes_and_periodic_sides_are_no_surface() -> None:
+    plain = {"order": 3, "element": (1.0, 2.0), "cells": (3, 2)}
+
+    assert traction_in(Mesh.uniform(**plain), EVERYWHERE).length == pytest.approx(14.0, rel=1e-12)
+    assert traction_in(Mesh.uniform(**plain, mirror=Around(left=1)), EVERYWHERE).length == pytest.approx(
+        10.0, rel=1e-12
+    )
+    around = traction_in(Mesh.uniform(**plain, periodic=(True, False)), EVERYWHERE)
+    assert around.length == pytest.approx(6.0, rel=1e-12)
+    assert around.share.sum() == pytest.approx(1.0, rel=1e-12)

@@ -1,10 +1,10 @@
-"""Places of points in a mesh, and displacements and their slopes there."""
+"""Places of points in a mesh, displacements and slopes there, and the static fields beside elements."""
 
 import math
 
 import numpy as np
 import pytest
-from meshes import buried, uneven
+from meshes import buried, one_across, uneven
 
 from dembound.continuum.interpolation import (
     FORCES,
@@ -17,6 +17,7 @@ from dembound.continuum.interpolation import (
     located,
     slopes,
 )
+from dembound.continuum.mesh import Mesh
 
 
 def test_a_polynomial_and_its_slopes_are_interpolated_and_extrapolated() -> None:
@@ -101,3 +102,27 @@ def test_beside_a_hole_that_waves_pass_it_is_the_part_of_the_motion_that_the_hol
     assert passed._replace(wave_number=0.0).largest_side(4, 1e-3) == math.inf
     assert passed.of_ties(1.0) == 0.0 == passed._replace(source="force").of_ties(1.0)
     assert blast().of_ties(0.5) == pytest.approx(TIES / 64.0)
+
+
+def test_slopes_in_the_element_that_closes_a_period() -> None:
+    mesh = Mesh.uniform(order=3, element=(1.5, 1.0), cells=(4, 2), periodic=(True, False))
+    point = np.array([[5.7, 0.3]])  # of the last column, whose right nodes are those of the first one
+    local = mesh.rule.slope(np.array([0.6]))[0] / 0.75
+
+    np.testing.assert_allclose(slopes(mesh, point)[0].reshape(4, 4).sum(axis=0), local, rtol=1e-12)
+
+
+def test_points_beyond_a_periodic_side_have_places_within_it() -> None:
+    mesh = one_across()
+    element, place = located(mesh, np.array([[-1.0, -1.0], [7.0, 0.5]]))
+    assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
+    np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
+
+
+def test_errors_of_a_blast_are_largest_at_the_elements() -> None:
+    """With the square of the distance inside, and less beyond; other fields are alike at all places."""
+    places = [np.array([4.0, y]) for y in (0.0, 3.0, 4.0, 7.0)]  # 1, 3, 4 and 7 m from what is in the hole
+    assert [blast().part_at(place) for place in places] == pytest.approx([1 / 16, 9 / 16, 1.0, (4 / 7) ** 4])
+    assert blast().part_at(np.array([-5.0, 2.5])) == 1.0
+    assert [blast()._replace(source=each).part_at(places[0]) for each in ("force", "waves")] == [1.0, 1.0]
+    assert math.isfinite(NearField((0.0, 0.0, 0.0, 0.0), 1.0, "pressure").part_at(np.zeros(2)))

@@ -1,4 +1,4 @@
-"""Waves of a medium, against closed forms."""
+"""Waves of a medium, against closed forms; plane waves at an angle, and those that a free surface sends back."""
 
 import numpy as np
 import pytest
@@ -115,3 +115,11 @@ def test_a_mass_on_the_surface_delays_what_it_sends_back(kind: str) -> None:
         size = np.abs(exact - [np.hypot(*wave.motion) for wave in waves]).max()
     assert errors[1] < 0.012 * errors[0]
     assert errors[1] < 0.01 * size
+
+
+def test_critical_angles_to_the_left_are_those_of_the_mirror_image() -> None:
+    mirrored = Medium(DENSITY, GENERAL.c11, GENERAL.c22, GENERAL.c12, GENERAL.c66, -GENERAL.c16, -GENERAL.c26)
+
+    left = critical_angle(GENERAL, "sv", -1.0)
+    assert left == pytest.approx(critical_angle(mirrored, "sv"), abs=1e-6)
+    assert abs(critical_angle(GENERAL, "sv") - left) > 0.5

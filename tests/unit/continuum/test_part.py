@@ -1,4 +1,4 @@
-"""The part of a continuum: its memory, energies, fields, and what it refuses."""
+"""The part of a continuum: mass, energies, stress, its stable step, and what it refuses."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from dembound.boundaries.support import SupportBuilder
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Layered, Medium
 from dembound.continuum.mesh import Around, Mesh
-from dembound.continuum.part import GridBody, GridPart
+from dembound.continuum.part import GridBody, GridPart, stress
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 
@@ -107,3 +107,40 @@ def test_the_step_limit_counts_the_delay(medium: Medium | Layered) -> None:
 
     # the iteration ends within 1e-3 of ω², on the safe side
     assert 0.0 <= 1.0 - step_limit(body) / dense_limit(body, delay) < 5e-4
+
+
+def test_the_absorbing_layer_has_the_fastest_speed_in_it(grid) -> None:
+    ground = Layered((SOIL, ROCK), (0.0,))
+    body, uniform = grid(medium=ground), grid(medium=SOIL)
+
+    left, bottom = body.profile("left"), body.profile("bottom")
+    assert left is not None
+    assert left.speed == ROCK.normal_speed(0)
+    assert left.guides
+    assert bottom == uniform.profile("bottom")
+    assert body.profile("top") is None
+
+
+def test_stress_at_a_kink_is_the_mean_by_area(grid) -> None:
+    """Strain a in the element on the left of an edge, 3 m wide, and b on its right, 2.5 m wide."""
+    body = grid(even=False)
+    x = body.mesh.positions[:, 0]
+    edge = 3.0
+    displacement = np.zeros((2, body.count))
+    displacement[0] = np.where(x < edge, 1e-4, 5e-4) * (x - edge)
+    found = stress(body, displacement)[np.abs(x - edge) < 1e-9]
+
+    expected = body.medium.matrix[:, 0] * (3.0 * 1e-4 + 2.5 * 5e-4) / 5.5
+    np.testing.assert_allclose(found, np.tile(expected, (len(found), 1)), rtol=1e-11)
+
+
+def test_stress_of_layers_is_that_of_each_medium() -> None:
+    mesh = Mesh.uniform(order=4, element=(3.0, 2.0), cells=(2, 2))
+    rock = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9)
+    body = GridBody(mesh=mesh, medium=Layered((rock, SOIL), (2.0,)))
+    x, y = mesh.positions.T
+    found = stress(body, np.stack([1e-4 * x, np.zeros_like(x)]))
+
+    for there, c11, c12 in ((y < 1.9, 9e9, 2e9), (y > 2.1, 2e9, 1e9), (np.abs(y - 2.0) < 0.1, 5.5e9, 1.5e9)):
+        np.testing.assert_allclose(found[there, 0], 1e-4 * c11)
+        np.testing.assert_allclose(found[there, 1], 1e-4 * c12)

@@ -1,11 +1,15 @@
 """Monitors in the continuum round a body: which disk they stand for, its motion, its twin, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_cases import small
 
+from dembound.disks.monitors import monitors_of
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
+from dembound.packings.column import with_column
 
 CASE = {
     "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
@@ -78,3 +82,28 @@ def test_below_the_ground_that_waves_enter_there_is_no_monitor() -> None:
         scene_of({"a": (3.0, -1.0), "b": (3.0, 0.0)}, waves)
     (line,) = error.value.problems
     assert line.startswith("monitor[1, a].position: lies below the ground, where incident motion is not known;")
+
+
+GRAINS = {"packing": {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}}
+
+
+def test_beside_a_column_the_motion_of_the_twin_is_added() -> None:
+    places = {"left": (-2.3, 2.2), "right": (11.1, 1.1), "in": (4.0, 2.0)}
+    scene = scene_of(places, GRAINS)
+    joint, seam = with_column(scene.ground.brick, scene.assembly, ("left", "right"))
+    outside = replace(scene.outside, first=len(joint.radii))
+    monitors, between = monitors_of(scene.case, scene.ground, joint, seam, outside)
+
+    assert list(monitors) == [*places, *(f"{name}.free_field" for name in places)]
+    assert list(between) == ["left", "right"]
+    for name, place in between.items():
+        twin = monitors[f"{name}.free_field"]
+        assert twin < seam.count
+        apart = joint.positions[twin] - joint.positions[0] - (place.place - joint.positions[seam.count])
+        np.testing.assert_allclose(apart[1], 0.0, atol=1e-9)  # at the same height, at the same place of the brick
+        np.testing.assert_allclose((apart[0] + 1e-9) % 4.0, 0.0, atol=1e-8)
+        assert place.node[-1] == twin
+        record = np.random.default_rng(1).normal(size=(5, len(place.node), 6))
+        alone = scene.between[name]
+        assert np.array_equal(place.node[:-1] - outside.first, alone.node - scene.outside.first)
+        np.testing.assert_allclose(place.motion(record), alone.motion(record[:, :-1]) + record[:, -1], rtol=1e-12)

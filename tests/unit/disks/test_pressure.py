@@ -217,3 +217,18 @@ amplitude = 1.0
 def test_pressures_that_cannot_act_are_refused(tables: str, problem: str) -> None:
     found = problems_of(f'{HEAD}[[load]]\nname = "cell"\npressure = 1e6\n{tables}')
     assert [line for line in found if problem in line], found
+
+
+def test_at_a_side_of_half_cells_the_wall_ends_at_their_centres() -> None:
+    half_cells = {"type": "viscous", "half_mass": True}
+    opening = {"type": "rectangle", "corners": [-1.0, 3.0, 2.0, 7.0]}
+    for side, edge in (({"type": "viscous"}, 0.0), (half_cells, 0.25)):
+        scene = pressed(LATTICE, opening, {"boundary.left": side})
+        _, forces = forces_of(scene.case.load[0], scene)
+        upper = forces[:, 1] > 0.0
+        assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - edge), rel=1e-9)
+    # of bonds along the side half
+    scene = pressed(LATTICE, opening, {"boundary.left": half_cells}, on="bonds")
+    _, forces = forces_of(scene.case.load[0], scene)
+    upper = forces[:, 1] > 1e-9 * P
+    assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - 0.25), rel=1e-9)

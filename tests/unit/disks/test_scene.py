@@ -1,11 +1,11 @@
-"""Building the scene of a case."""
+"""Building the scene of a case: holes, sides, the column beside it, a box in the ground."""
 
 import numpy as np
 import pytest
 from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.scene import DiskScene, build, column_alone
 from dembound.disks.sides import boundary_medium
 from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError, PackingError
@@ -177,3 +177,67 @@ def test_between_box_and_surface_there_is_room_for_an_element() -> None:
     up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
     lattice["packing"]["origin"] = [14.0, 18.0]
     assert scene(lattice, {"boundary": up_to_it}).outside.count > 0
+
+
+def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
+    scene = build(ground(**{"boundary.bottom.half_mass": True}))
+    seam, whole = scene.seam, len(scene.ground.brick.pairs)
+    halves = scene.edges["bottom"].nodes
+    low = scene.assembly.positions[np.repeat(seam.node, seam.contact_counts), 1] == 0.25
+
+    assert 0 < np.count_nonzero(low) < len(low)
+    assert np.array_equal(seam.contact_type >= whole, low)
+    along = np.isin(scene.assembly.pairs, halves).all(axis=1)
+    assert np.array_equal(scene.assembly.contact_type >= whole, along)
+    # column and body alike: a row of 8 disks has 7 contacts, the column's one disk touches itself
+    assert np.count_nonzero(along) == 8
+    assert set(scene.mass[halves]) == {0.5 * scene.ground.mass[0]}
+
+
+EVERYWHERE = [
+    {"name": "weight", "acceleration": [0.5, -9.81]},
+    {"name": "shaking", "acceleration": [1.0, 0.0], "wave": "pulse"},
+]
+
+
+HERE = [
+    {"name": "foot", "force": [0.0, -1e6], "region": [0.0, 0.0, 2.0, 2.0]},
+    {"name": "tap", "force": [1e6, 0.0], "position": [1.0, 1.0], "wave": "pulse"},
+    {"name": "lift", "acceleration": [0.0, 1.0], "region": [0.0, 0.0, 2.0, 2.0]},
+]
+
+
+@pytest.mark.parametrize(("pattern", "half"), [("A", True), ("C", False)])
+def test_a_column_alone_has_what_it_has_beside_the_body(ground, pattern: str, half: bool) -> None:
+    """It has supports and loads on all disks, between bottom and top, and no hole."""
+    sides = {"left": BESIDE, "right": BESIDE, "bottom": {**BASE, "half_mass": half}, "top": {"type": "viscous"}}
+    niche = {"name": "niche", "type": "circle", "centre": [2.0, 1.5], "radius": 0.4}
+    stage = {"boundary": {"left": {"type": "roller"}, "bottom": {"type": "fixed"}}}
+    scene = build(ground(pattern, boundary=sides, load=EVERYWHERE + HERE, static=stage, hole=[niche]))
+    column, count = column_alone(scene), scene.seam.count
+    shift = scene.positions[:count] - column.positions
+
+    # one shift for all, rounded as places of 10 m are
+    np.testing.assert_allclose(shift, np.broadcast_to([shift[0, 0], 0.0], shift.shape), rtol=0.0, atol=1e-14)
+    assert np.array_equal(column.mass, scene.mass[:count])
+    assert (column.count, column.size[0], column.seam) == (count, scene.seam.width, None)
+    theirs, ours = scene.supports, column.supports
+    below = theirs.node < count
+    for name in ("node", "component", "damping", "stiffness", "prescribed"):
+        assert np.array_equal(getattr(ours, name), getattr(theirs, name)[below])
+    assert not ours.follow.any()
+    times = np.linspace(0.0, 0.01, 7)
+    assert np.array_equal(ours.sample(times, 0.001), theirs.sample(times, 0.001)[:, below])
+    assert ours.sample(times, 0.001).any()
+    assert np.array_equal(column.steady_load, scene.steady_load[:, :count])
+    assert column.steady_load[0].any()
+    assert [load.name for load in column.case.load] == ["weight", "shaking"]
+    assert list(column.edges) == ["bottom", "top"]
+    for side, edge in column.edges.items():
+        nodes = scene.edges[side].nodes
+        assert np.array_equal(np.sort(edge.nodes), nodes[nodes < count])
+        assert edge.length == scene.seam.width
+    assert {side: table.type for side, table in column.case.static.boundary.items()} == {"bottom": "fixed"}
+    types = {"left": "periodic", "right": "periodic", "bottom": "viscous_input", "top": "viscous"}
+    assert {side: table.type for side, table in column.case.boundary.items()} == types
+    assert column.case.hole == ()

@@ -75,3 +75,19 @@ def test_spall_is_the_first_place_at_its_strength(rise: float, fall: float, shar
 def test_a_crest_below_the_strength_breaks_nothing(strength: float) -> None:
     with pytest.raises(ValueError, match="strength"):
         triangle_spall(LENGTH, SPEED, 1e-4, 1e-4, CREST, strength)
+
+
+@pytest.mark.parametrize("far_end", ["free", "fixed"])
+def test_ends_do_what_they_are_to(far_end: End) -> None:
+    early = both(1.2, np.array([0.0, 0.99, 1.0]) * 1.2 / SPEED, far_end)
+    assert not np.any(early)  # nothing comes before the wave does
+    time = np.linspace(0.0, 6.0 * WAIT, 1000)
+    rounding = 6 * np.finfo(float).eps * 4.0 * np.pi * 6.0 * WAIT / 6e-4 * CREST  # of the times of six passages
+    np.testing.assert_allclose(both(0.0, time, far_end)[0], -bump(time), rtol=0, atol=rounding)
+    stress, velocity = both(LENGTH, time, far_end)
+    if far_end == "free":
+        np.testing.assert_allclose(stress, 0.0, rtol=0, atol=rounding)
+        assert velocity.max() == pytest.approx(2.0 * CREST / IMPEDANCE, rel=1e-3)
+    else:
+        np.testing.assert_allclose(velocity, 0.0, rtol=0, atol=rounding / IMPEDANCE)
+        assert stress.min() == pytest.approx(-2.0 * CREST, rel=1e-3)

@@ -1,4 +1,4 @@
-"""Layers on a half-space beside tables that other programs, and an independent one, have computed."""
+"""Layers on a half-space beside tables of other programs, and in time beside an independent solution."""
 
 from pathlib import Path
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from dembound.exact import Lattice, cells_per_wavelength, courant_limit
+from dembound.exact.dispersion import usual_shares
 
 HORIZONS = [1, 2, 3, 8]
 
@@ -76,3 +77,19 @@ def test_what_makes_no_sense_is_refused() -> None:
         cells_per_wavelength(1, 1.01)
     with pytest.raises(ValueError, match="error"):
         cells_per_wavelength(1, 0.5, error=1.0)
+
+
+@pytest.mark.parametrize("horizon", HORIZONS)
+def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
+    shares = usual_shares(horizon)
+    courant = 0.9 * courant_limit(horizon)
+    usual, given = lattice(horizon, courant), Lattice(horizon, 1.0, courant, 1.0, shares)
+    phase = np.linspace(0.0, 3.1, 200)
+
+    # sums of m terms of order 1; of the group velocity the closed form vanishes where the sum has its rounding
+    np.testing.assert_allclose(given.frequency(phase), usual.frequency(phase), rtol=1e-13 * horizon)
+    np.testing.assert_allclose(given.group_velocity(phase), usual.group_velocity(phase), atol=1e-13 * horizon)
+    assert given.courant_limit == pytest.approx(courant_limit(horizon), rel=1e-12)
+    assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(
+        cells_per_wavelength(horizon, courant), rel=1e-10
+    )

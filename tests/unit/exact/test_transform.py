@@ -1,4 +1,4 @@
-"""Responses whose histories are known in closed form."""
+"""Responses whose histories are known in closed form, and ratios of Bessel functions of high orders."""
 
 import math
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from plain_kernels import random_pairs, stepped
+from plain_kernels import behind, random_pairs, stepped
 
 from dembound.kernels import tables
 from dembound.kernels.common import CHUNKS, DONE, LAW_ENDS, LIST_ENDS
@@ -176,5 +176,26 @@ def test_no_step_begins_outside_the_elastic_law_or_with_a_list_that_is_too_old(
     assert why == reason
     assert 2 < done < 150
     assert done == np.argmax((room < 0.0) | (2.0 * far > skin))
+    close(u, states[done][0])
+    close(v, states[done][1])
+
+
+def test_a_supported_node_that_begins_to_spin_ends_the_law_at_once(bodies: Bodies) -> None:
+    model = stepped(2 * PARTICLES, 5, TIME_STEP, loaded=False)
+    assert model.nodes[-1] >= PARTICLES
+    model.push[:] = 0.0
+    model.push[:, -1, 2] = 60.0  # rad/s, prescribed
+    weak = tables.Limits(friction=5.0, tension=0.5, cohesion=1e3, tan_fa=0.0, geometry=BONDED)  # breaks soon by bending
+    watch, parts = watched(bodies, limits=weak), (slice(0, PARTICLES), slice(PARTICLES, None))
+    arms, pairs = np.concatenate([np.zeros(PARTICLES), watch.arms]), behind(watch.contacts, PARTICLES)
+    later = watch._replace(links=bodies.links(begin=PARTICLES), contacts=pairs, arms=arms)
+    u, v = np.zeros((2, 3, 2 * PARTICLES))
+    states = model.leapfrog(lambda u, _: np.hstack([bodies.forces(u[:, part]) for part in parts]), u, v)
+    done, why, _ = run_kernel(bodies, model, u, v, (bodies.links(), later))
+
+    room = np.array([slack(then, later.contacts, later.limits, False) for then, _, _ in states])
+    assert why == LAW_ENDS
+    # it spins from the first step on, before anything else moves: its speed of before that step says nothing
+    assert done == np.argmax(room < 0.0) == 1
     close(u, states[done][0])
     close(v, states[done][1])

@@ -1,4 +1,4 @@
-"""Near pairs by the grid of cells are those that a trial of all pairs and images finds."""
+"""Near pairs by the grid of cells, and the approach of disks that may meet."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Functions of laws compute for eight pairs in lanes what they compute for each of the pairs."""
+"""Laws: eight pairs in lanes are eight pairs, linear laws are linear, and moduli from wave speeds."""
 
 import numpy as np
 import pytest

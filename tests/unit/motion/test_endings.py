@@ -1,4 +1,4 @@
-"""The end of a run by silence."""
+"""The ends of a run: by silence, and by the fall of the forces on its driven sides."""
 
 from types import SimpleNamespace
 

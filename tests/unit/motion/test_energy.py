@@ -1,6 +1,7 @@
 """The ledger, entry by entry, where each energy is known by hand."""
 
 from collections.abc import Callable
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import RunError
 from dembound.kinds import loads
-from dembound.motion.energy import GAIN, OPPOSED, Ledger, opposed
+from dembound.motion.energy import GAIN, OPPOSED, Entry, Ledger, opposed
 from dembound.motion.simulation import Simulation
 from dembound.motion.state import State
 from dembound.motion.trackers import NEVER, Tracker
@@ -100,11 +101,10 @@ PASSING = {
 """A pulse of 91 µs that takes 365 µs to leave through the other end, of which nothing returns."""
 
 
-@pytest.mark.parametrize("interval", [1, 300])  # steps of 3.65 µs: it has left after 125
-def test_a_pulse_that_comes_and_goes_between_two_entries_was_supplied(interval: int) -> None:
+def test_a_pulse_that_comes_and_goes_between_two_entries_was_supplied() -> None:
     scene = build_bar(loads(tomli_w.dumps(PASSING)))
     simulation = Simulation(scene, bar_stability.choose_step(scene)[0])
-    ledger = booked(simulation, interval)
+    ledger = booked(simulation, 300)  # steps of 3.65 µs: it has left after 125
     simulation.advance(1000)
 
     # ρcA∫v²dt of a triangle is a third of its length; a kink between two steps leaves swings of part of a step
@@ -125,3 +125,26 @@ def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:
     assert shares[3] == pytest.approx(2550.0, rel=0.01)
     assert shares[3] > OPPOSED
     assert max(shares[:3] + shares[4:]) < 1.0
+
+
+@pytest.mark.parametrize(
+    ("interval", "last", "steps"),
+    [
+        (10, NEVER, [0, 10, 20]),
+        (10, 27, [0, 10, 20, 27]),
+        (40, 4, [0, 4]),
+        (1, NEVER, list(range(29))),
+    ],
+)
+def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: list[int]) -> None:
+    each, other = simulated(bar), simulated(bar)
+    every, some = booked(each), booked(other, interval, last)
+    assert some.columns.shape == (0, len(fields(Entry)))
+    record = each.advance(29)
+    records = [other.advance(part) for part in (4, 9, 12, 4)]  # wherever the run is cut
+
+    assert np.array_equal(some.columns, every.columns[steps])
+    assert [entry.time for entry in some.entries] == [step * other.time_step for step in steps]
+    assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
+    assert np.array_equal(other.state.displacement, each.state.displacement)
+    assert np.array_equal(np.concatenate(records), record)

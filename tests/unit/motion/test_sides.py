@@ -66,3 +66,9 @@ def test_samples_are_those_of_every_nth_step_however_the_run_is_cut(bar, cuts) -
     assert np.array_equal(eighth.state.side_work, every.state.side_work)
     assert np.any(every.side_samples.record[-1])
     assert np.all(every.state.side_work[:, :, 0].any(axis=1))
+
+
+def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
+    force = np.zeros((2, 5))
+    force[:, 2] = [10.0, 20.0]
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)

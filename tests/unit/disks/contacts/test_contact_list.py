@@ -1,4 +1,4 @@
-"""The list of pairs: complete, each pair once, with a history that every search keeps."""
+"""The list of pairs: complete, each pair once, with a history that every search keeps; bonds of half cells."""
 
 from collections import Counter
 

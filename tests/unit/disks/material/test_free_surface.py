@@ -7,7 +7,7 @@ import pytest
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import free_surface
-from dembound.disks.material.free_surface import cut_at, skin_depths
+from dembound.disks.material.free_surface import _turned, cut_at, skin_depths
 from dembound.disks.material.homogenise import homogenise
 from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
 from dembound.packings.brick import Brick
@@ -88,3 +88,12 @@ def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monk
     higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
     assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
     assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
+
+
+def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
+    """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
+    turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
+    of = dict(zip(("bottom", "top", "left", "right"), SIDES, strict=True))
+    assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
+    for side, before in of.items():
+        assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)

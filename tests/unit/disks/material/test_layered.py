@@ -91,3 +91,10 @@ def test_masses_and_sides_are_those_of_the_layers() -> None:
     bottom = (table.damping > 0.0) & (table.component == 1) & (up[table.node] < 1.0)
     bottom &= np.abs(scene.positions[table.node, 0] - 6.0) < 5.0
     np.testing.assert_allclose(table.damping[bottom], 2300.0 * 900.0)
+
+
+def test_a_disk_on_a_joint_is_above_it(lattice) -> None:
+    ground = ground_of(lattice, STIFF, SOFT)
+    assert ground.layer_of(np.array([10.0 - 1e-3, 10.0 - 1e-9, 10.0, 11.0])).tolist() == [1, 0, 0, 0]
+    assert ground.at(9.9).density == 2300.0
+    assert ground.at(10.0).density == 1800.0

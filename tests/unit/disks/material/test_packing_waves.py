@@ -1,4 +1,4 @@
-"""The coupling of opposite waves by copies of a brick, beside the brick's own frequencies."""
+"""Waves of a packing: the coupling of opposite ones by copies of a brick, and the fastest."""
 
 import math
 

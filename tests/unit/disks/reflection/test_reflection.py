@@ -1,4 +1,4 @@
-"""Types of a side compared: what each returns by frequency, in a run and in words."""
+"""Types of a side compared, in a run and by layer."""
 
 import numpy as np
 import pytest

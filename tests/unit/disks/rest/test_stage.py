@@ -204,3 +204,9 @@ def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None
     # each rounded by 1e-16, cancel
     assert np.abs(momenta[2, 1].sum()) > 1e-3 * np.abs(momenta[2, 1]).sum()
     assert (np.abs(momenta.sum(axis=(1, 2))) < 1e-13 * np.abs(momenta).sum(axis=(1, 2))).all()
+
+
+def test_stress_along_a_periodic_axis_is_there_from_the_start(bar) -> None:
+    stress = (-1e6, -2e6, 0.4e6)
+    settled = settle(scene(bar, boundary=WRAP, static={"stress": stress}, **{"packing.size": [1.0, 1.0]}))
+    np.testing.assert_allclose(settled.stress, stress, rtol=1e-12)

@@ -1,4 +1,4 @@
-"""The motion of the undisturbed ground: near ties, in the packing, and that of waves that run straight up."""
+"""The motion of the undisturbed ground: near ties, in the packing, and beside a column of disks."""
 
 import numpy as np
 from ground_motions import RAMP, ground, sine

@@ -118,3 +118,22 @@ def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
     made = square()
     # half bonds of 2K with K = ρc_p²: η·2K = 0.3 ρc_pD
     assert lag_of(made, 0.3) * 2.0 * made.stiffness.normal[0] == pytest.approx(0.3 * 2500.0 * 1000.0 * 0.5)
+
+
+def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground) -> None:
+    """Sides moved by 2 m move the motion of ties by 1 m along the gradients of each component."""
+    tied = Tied(ground)
+    bonds = CutBonds.of(ground, tied.cut, tied.body.positions)
+    near, far = (bonds.between(np.add(tied.mesh.sides, [-offset, offset, -offset, offset])) for offset in (0.0, 2.0))
+    moved = far.corrector - near.corrector
+    for number, (axis, sign) in enumerate(((0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0))):
+        of_side = moved[..., bonds.side == number]
+        expected = np.zeros((3, 4))
+        expected[axis, axis] = sign  # xx or yy
+        expected[1 - axis, 2:] = sign  # xy and yx
+        np.testing.assert_allclose(of_side, np.broadcast_to(expected[..., None], of_side.shape), atol=1e-12)
+    tied.wall = Wall.of(tied.mesh, far, 0.0)
+    x, y = np.vstack([tied.body.positions, tied.mesh.positions]).T
+    u = np.random.default_rng(4).normal(size=(3, tied.count))
+    turned = np.stack([-y, x, np.ones_like(x)])
+    assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(tied.forces(12.0 * u)).max()

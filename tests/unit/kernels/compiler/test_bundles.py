@@ -5,6 +5,7 @@ import pytest
 from numba import config, njit
 
 from dembound.kernels.common import FAST, MAKES
+from dembound.kernels.compiler.bundles import Written, kind_of
 from dembound.kernels.tables import Bonded, Cells, Contacts
 from dembound.laws.elastic import Limits
 
@@ -50,3 +51,27 @@ def test_compiled_code_reads_and_writes_what_is_in_a_bundle(options) -> None:
     assert WORK[0].tolist() == [0.0, 4.0]
     assert read(bonded(stops=False, skin=3.0))[7:11] == [3.0, 0.25, 1.0, 0.0]
     assert len(kernel.signatures) == 1
+
+
+def test_only_what_has_changed_is_written_and_nothing_of_another_type() -> None:
+    law = bonded()
+    written = Written(law)
+    address, numbers = written.address, written.numbers.copy()
+    assert written.takes(law._replace(skin=3.0))
+    (changed,) = np.flatnonzero(written.numbers != numbers)
+    assert written.numbers[changed] == np.float64(3.0).view(np.int64)
+    assert written.address == address
+
+    for other in (
+        law._replace(skin=1),
+        law._replace(way=law.way.astype(np.float32)),
+        law._replace(origin=np.zeros((2, 3))),
+        law._replace(origin=np.zeros((3, 2)).T),
+        law._replace(damped=np.zeros((2, 2))[:, ::2]),
+        law._replace(contacts=law.contacts._replace(slip=np.zeros((1, 2)))),
+        law.limits,
+    ):
+        before = written.numbers.copy()
+        assert kind_of(other) != kind_of(law)
+        assert not written.takes(other)
+        np.testing.assert_array_equal(written.numbers, before)

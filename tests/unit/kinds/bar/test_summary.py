@@ -1,4 +1,4 @@
-"""Entries of a bar's summary."""
+"""Entries of a bar's summary, and its results in words."""
 
 import json
 from pathlib import Path

@@ -206,3 +206,24 @@ def test_a_load_over_a_length_beside_that_of_its_wave_is_warned_of() -> None:
     for nodes, share in ((6, 0.5 + 0.5 * np.sin(ratio) / ratio), (21, 0.25 * 0.5 / (20.5 * 0.025))):
         (line,) = found(nodes)  # of the second all of the pulse is within: l/4W
         assert f"only {100.0 * share:.2g} % of its peak enters" in line
+
+
+@pytest.mark.parametrize(
+    ("spacing", "courant", "key"), [(0.025, 1.0, None), (0.025, 0.9, "run.courant"), (0.02, 0.8, "bar.range:")]
+)
+def test_fronts_of_impacts_need_one_step_for_a_spacing(spacing: float, courant: float, key: str | None) -> None:
+    run = {"duration": 4e-4, "courant": courant}
+    lines = warned(with_ranges([STRIKER[0], STRIKER[1] | {"spacing": spacing}], run))
+    found = [line for line in lines if "impacts" in line and "fracture_energy" not in line]
+    assert sum("bar.fracture_energy" in line for line in lines) == (spacing == 0.025)
+    assert len(found) == (key is not None)
+    assert key is None or found[0].startswith(key)
+
+
+def test_monitors_in_gaps_are_warned_of() -> None:
+    # ranges end at 0.2 m and begin at 0.25 m
+    monitors = [{"name": str(place), "position": place} for place in (0.2, 0.21, 0.25)]
+    case = with_ranges([STRIKER[0], STRIKER[1] | {"gap": 0.05}], {"duration": 1e-3}, monitor=monitors)
+    assert [line for line in warned(case) if line.startswith("monitor")] == [
+        "monitor.0.21: is at 0.21 m, in the gap from 0.2 to 0.25 m between two ranges; it records the node at 0.25 m"
+    ]

@@ -121,3 +121,23 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
     assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
     assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
+
+
+def test_a_low_row_of_elements_has_a_warning(case) -> None:
+    thin = {
+        "outside.accuracy": 0.01,
+        "layer": [{"thickness": 8.0, "density": 1800.0, "s_wave_speed": 350.0}, {"name": "seam", "thickness": 2.0}, {}],
+    }
+    (line,) = warnings_of(case, **thin)
+    assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
+
+
+def test_elements_too_large_beside_a_load(case) -> None:
+    slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
+    near = {"load": [{"name": "f", "position": [20.5, 4.5], "force": [0.0, -1e6], "wave": "pulse"}]}
+
+    assert warnings_of(case, **slow) == []
+    (line,) = warnings_of(case, **slow, **near)
+    assert line.startswith(
+        "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
+    )

@@ -1,4 +1,4 @@
-"""Meshes of disks for ParaView equal the record."""
+"""Meshes of disks and of a continuum for ParaView equal the record."""
 
 import h5py
 import meshio

@@ -1,4 +1,4 @@
-"""Warnings about sides that send back much of a wave, or take much of one along them."""
+"""Warnings about sides that send back much of a wave, take much of one along them, or have other springs."""
 
 import pytest
 from small_cases import small

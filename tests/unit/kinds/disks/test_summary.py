@@ -1,4 +1,4 @@
-"""Entries of the summary of disks and their run."""
+"""Entries of the summary of disks and their run, and its results in words."""
 
 import json
 

@@ -114,3 +114,19 @@ def test_a_speed_of_s_waves_that_the_packing_lacks_is_warned_of(share: float, re
     assert [line[:80] for line in lines] == reported * [
         "material.s_wave_speed: is 425 m/s, S waves along x run at 500 m/s in this packing"[:80]
     ]
+
+
+def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
+    """Between four disks of 0.5 m, or within an earlier hole; not with the centre of one at its upper right."""
+    corners = {"between": [1.8, 0.3, 2.2, 0.7], "one": [5.8, 0.3, 6.26, 0.76]}
+    corners |= {"wide": [7.3, 0.0, 9.7, 0.4], "narrow": [7.8, 0.0, 9.2, 0.4]}
+    holes = [{"name": name, "type": "rectangle", "corners": each} for name, each in corners.items()]
+    expected = [
+        "hole[1, between]: no particle is centred in it, so it removes none",
+        "hole[4, narrow]: lies within hole.wide, so it removes no more particles",
+    ]
+    for later, said in (("narrow", expected), ("wide", expected[:1])):
+        each = [{**hole, "stage": "after" if hole["name"] == later else "before"} for hole in holes]
+        static = {"static": {"stress": [-1e5, -1e5, 0.0]}}
+        lines = warned(bar({"packing.size": [10.0, 1.0], "hole": each, **static}))
+        assert [line for line in lines if line.startswith("hole")] == said
