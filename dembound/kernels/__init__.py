@@ -28,7 +28,7 @@ def sources_digest(*places: Path) -> str:
 
 
 def registered_laws() -> list[Path]:
-    """The modules in which other packages register laws, whose functions become part of kernels."""
+    """The modules of other packages' laws that have functions for pairs, which become part of kernels."""
     found = []
     for entry in entry_points(group="dembound.laws"):
         package, *inner = entry.module.split(".")
@@ -37,8 +37,8 @@ def registered_laws() -> list[Path]:
             roots = [] if spec is None else [Path(each) for each in spec.submodule_search_locations or []]
             places = [root.joinpath(*inner) for root in roots] if inner else []
             places += [] if spec is None or inner or spec.origin is None else [Path(spec.origin)]
-            found += [each for place in places for each in (place, place.with_suffix(".py")) if each.exists()]
-    return sorted(found)
+            found += [each for place in places for each in (place, place.with_suffix(".py")) if each.is_file()]
+    return sorted(each for each in found if b"is_pair_law" in each.read_bytes())
 
 
 def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:

@@ -24,7 +24,7 @@ def test_compiled_code_is_kept_apart_for_every_state_of_the_sources(tmp_path) ->
 def test_laws_of_other_packages_count_as_sources(tmp_path, monkeypatch) -> None:
     (tmp_path / "sandy").mkdir()
     (tmp_path / "sandy" / "__init__.py").write_text("")
-    (tmp_path / "sandy" / "law.py").write_text("raise ImportError")  # is not imported
+    (tmp_path / "sandy" / "law.py").write_text("raise ImportError  # is_pair_law: is read, not imported")
     monkeypatch.syspath_prepend(tmp_path)
     entries = [EntryPoint(name, f"{name}.law:Law", "dembound.laws") for name in ("sandy", "gone")]
     monkeypatch.setattr(kernels, "entry_points", lambda group: [each for each in entries if each.group == group])
