@@ -2,9 +2,20 @@
 
 import numpy as np
 import pytest
+from disk_systems import (
+    AT_ONCE,
+    BONDED,
+    ELASTIC,
+    SIDES,
+    STEP,
+    WITH_HISTORY,
+    begun,
+    locked_in_forces,
+)
 from small_cases import small
 
 from dembound.disks.scene import build
+from dembound.disks.stepping.system import DiskSystem
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.simulation import Simulation
@@ -40,3 +51,23 @@ def test_a_body_whose_support_is_taken_away_falls_freely(law: str, side: str) ->
     hangs = [[line for line in disk_warnings(build(case), step) if "hold a side" in line] for case in (kept, fallen)]
     assert [len(lines) for lines in hangs] == [1, 0]
     assert hangs[0][0].startswith("static.boundary.bottom: bears load.gravity along y, as no side does in the run")
+
+
+@pytest.mark.parametrize("at_once", [False, True])
+@pytest.mark.parametrize("boundary", SIDES.values(), ids=SIDES)
+def test_what_is_locked_in_pushes_a_body_as_built_under_either_law(loose, boundary: dict, at_once: bool) -> None:
+    body = loose(**WITH_HISTORY, **(AT_ONCE if at_once else {}), boundary=boundary)
+    system = DiskSystem(body, STEP)
+    state = begun(system)
+
+    # beside a free field it also comes across the seam, of which the elastic law does not know
+    if at_once or boundary:
+        assert state.laws == [(BONDED, 0)]
+        assert not system.steady.any()  # the pairs push with it themselves
+    else:
+        assert state.laws == [(ELASTIC, 0)]
+        assert np.array_equal(system.steady, locked_in_forces(body))
+        assert np.abs(system.steady).max() > 1e5
+    assert {part.law_name for part in system.parts} == {state.laws[0][0]}
+    assert system.balance is None
+    assert not any(part.stops_at_breaks for part in system.parts)
