@@ -74,12 +74,9 @@ COMMANDS = (
 """One after the other in one process, each with what has not been imported until its end."""
 
 
-@pytest.mark.parametrize(
-    ("start", "unused"), [(starting.DEFAULT, "dembound.kinds.bar.kind"), ("rock_bar", "dembound.kinds.disks.kind")]
-)
-def test_commands_import_only_what_they_use(tmp_path, start: str, unused: str) -> None:
-    check = (["check", "first.toml"], FIGURES | SIGNALS | {"h5py", unused})
-    steps = [*COMMANDS, check] if start == starting.DEFAULT else [(["new", "first", "--from", start], set()), check]
+def test_commands_import_only_what_they_use(tmp_path) -> None:
+    check = (["check", "first.toml"], FIGURES | SIGNALS | {"h5py", "dembound.kinds.bar.kind"})
+    steps = [*COMMANDS, check]
     program = f"""
 import sys
 from pathlib import Path

@@ -126,15 +126,3 @@ def test_a_record_tells_of_its_bar(record, loaded):
         del file["cracks/time"]
         file["cracks/time"] = [4e-4, 3e-4, 5e-4]
     assert read_gauge(record, "near").metadata.broken == 3e-4
-
-
-def test_places_and_velocities_count_from_the_loaded_end(record, felt):
-    with h5py.File(record, "r+") as file:
-        file.attrs["loaded"] = "right"
-        file.copy("histories/end", "histories/start")
-        file["histories/start"].attrs["position"] = [0.0, 0.0]
-    near, far = (read_gauge(record, name) for name in ("near", "far"))
-    np.testing.assert_array_equal(near.stress, 1e6 * felt()[1])
-    assert (near.position, far.position) == (0.99 - 0.6, 0.99 - 0.9)
-    assert read_gauge(record, "near", position=0.6).position == 0.6  # options count from there anyway
-    np.testing.assert_array_equal(read_free_end(record, "start")[1][:400], -VELOCITY)  # outwards is to the left

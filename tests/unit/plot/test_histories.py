@@ -1,4 +1,4 @@
-"""Histories of monitors, record sections and hodographs."""
+"""Histories of monitors, and record sections."""
 
 import h5py
 import numpy as np
@@ -98,16 +98,6 @@ def test_a_section_has_each_history_at_its_distance(small_run):
             np.testing.assert_allclose(line.get_ydata(), expected)
             np.testing.assert_allclose(line.get_xdata(), group["time"][:] / 1e-3)
     assert panel.get_title("left") == f"{distance:.3g} m upwards is {largest / 0.9:.3g} m/s"
-
-
-def test_a_hodograph_has_the_motion_along_y_against_that_along_x(small_run, other_run):
-    runs = [small_run, other_run]
-    panel = plot_hodograph(runs, "displacement", ["front"]).axes[0]
-    with h5py.File(small_run) as file:
-        moved = file["histories/front/displacement"][:]
-    np.testing.assert_array_equal(panel.lines[0].get_xdata(), moved[:, 0])
-    np.testing.assert_array_equal(panel.lines[0].get_ydata(), moved[:, 1])
-    np.testing.assert_array_equal(panel.lines[1].get_xydata(), moved[-1:, :2])
 
 
 def test_what_cannot_be_shown_is_said(small_run, spalled_run):

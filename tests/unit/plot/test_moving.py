@@ -6,8 +6,7 @@ import pytest
 from matplotlib.collections import EllipseCollection, PathCollection
 
 from dembound.errors import CaseError
-from dembound.plot.moving import MovingBar, MovingScene, TimeLine
-from dembound.plot.style import COLOURS
+from dembound.plot.moving import MovingBar, MovingScene
 
 
 def one(panel, kind):
@@ -85,17 +84,6 @@ def test_a_bar_is_drawn_along_itself_with_the_bonds_broken_so_far(spalled_run):
         places = file["particles/position"][:, 0] + 30.0 * last["displacement"][:, 0]
         (line,) = moved.figure.axes[0].lines
         np.testing.assert_allclose(line.get_data(), [places, last["velocity"][:, 0]], rtol=1e-12)
-
-
-def test_the_line_in_the_histories_is_at_the_time(small_run):
-    shown = TimeLine(small_run, 8.0, ["front"])
-    colour = np.array([int(COLOURS[1][begin : begin + 2], 16) for begin in (1, 3, 5)])
-    panel = shown.figure.axes[0]
-    for time in (0.002, 0.004):  # the record has milliseconds below 0.1 s
-        frame = shown.frame(time, 800)
-        near = np.abs(frame.astype(int) - colour).max(axis=2) < 40
-        column = np.flatnonzero(near.sum(axis=0) > 20).mean()
-        assert abs(column - panel.transData.transform((1e3 * time, 0.0))[0]) < 1.0
 
 
 def test_what_cannot_be_drawn_is_said(small_run, other_run, spalled_run):

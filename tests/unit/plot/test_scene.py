@@ -74,15 +74,6 @@ def test_stresses_are_shown_where_they_are_largest(rich_run, field, column):
     assert bar.get_ylabel() == f"stress {field[-2:]}, {sense} (MPa)"
 
 
-def test_peaks_are_those_of_the_whole_run(rich_run):
-    panel = plot_scene(rich_run, field="peak").axes[0]
-    with h5py.File(rich_run) as file:
-        peaks = file["particles/peak_velocity"][:]
-    disks = disks_of(panel)
-    np.testing.assert_array_equal(disks.get_array(), peaks)
-    assert disks.get_clim() == (0.0, peaks.max())
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

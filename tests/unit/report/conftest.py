@@ -48,11 +48,3 @@ def blind_run(tmp_path_factory) -> Path:
     """A run of disks without snapshots and monitors."""
     changes = {"output.snapshots": 0, "monitor": []}
     return complete(tmp_path_factory.mktemp("blind"), PUSHED, "blind", changes)
-
-
-@pytest.fixture(scope="session")
-def many_monitors(tmp_path_factory) -> Path:
-    """A run of disks along x with nine monitors, over which a pulse of a fifth of the run has gone; five snapshots."""
-    monitors = [{"name": f"M{n}", "position": [1.0 + n, 1.2]} for n in range(9)]
-    changes = {"monitor": monitors, "output.snapshots": 5, "run.duration": 0.05, "boundary.left.wave_s": None}
-    return complete(tmp_path_factory.mktemp("many"), PUSHED, "many", changes)

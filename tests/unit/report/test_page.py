@@ -196,14 +196,3 @@ def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
     with pytest.raises(CaseError, match="RESULTS: holds runs of bars and of disks"):
         write_report([pushed_runs[0], spalled_results], tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
-
-
-def test_a_page_opens_with_the_wave_in_view_and_has_all_monitors(many_monitors, tmp_path):
-    write_report([many_monitors], tmp_path / "page.html")
-    live = Page(tmp_path / "page.html").live()
-    frames = live["frames-0"]
-    with h5py.File(many_monitors) as file:
-        motion = [np.square(group["velocity"][:, :2]).sum() for group in file["snapshots"].values()]
-    assert frames["first"] == np.argmax(motion)
-    assert motion[frames["first"]] > 50.0 * motion[len(motion) // 2]  # when the wave has gone
-    assert len(live["chart-0"]["panels"]) == 9

@@ -18,28 +18,6 @@ from dembound.results.reader import (
 from dembound.results.results import Results
 
 
-def test_what_damage_raises_is_one_line_about_the_record(small_run, tmp_path):
-    path = tmp_path / "run.h5"
-    for damage in (
-        lambda file: file.pop("particles"),
-        lambda file: file["histories/front"].pop("time"),
-        lambda file: file.attrs.pop("name"),
-        lambda file: file["histories/front/time"].resize(3, axis=0),
-    ):
-        path.write_bytes(small_run.read_bytes())
-        with h5py.File(path, "r+") as file:
-            damage(file)
-        with pytest.raises(RecordError) as caught:
-            contents(path)
-        assert str(caught.value).startswith(f"{path}: ")
-        assert len(caught.value.problems) == 1
-
-
-def contents(path):
-    with open_record(path) as file:
-        return file["particles/position"][:], file["histories/front/time"][:], file.attrs["name"]
-
-
 def test_the_history_of_an_interrupted_run_ends_where_both_columns_do(small_run, tmp_path):
     path = tmp_path / "run.h5"
     path.write_bytes(small_run.read_bytes())

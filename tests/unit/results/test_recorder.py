@@ -11,11 +11,8 @@ from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.energy import Entry, Ledger
-from dembound.motion.kind import Stage
-from dembound.motion.part import NO_CRACKS
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
-from dembound.results.new_record import write_stages
 from dembound.results.reader import text_of
 from dembound.results.recorder import HALF_STEP, Recorder
 from dembound.results.recording import Histories, Snapshots
@@ -251,17 +248,3 @@ def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
         assert np.array_equal(snapshot["stress"], part.stress(simulation.state.displacement))
         assert np.array_equal(snapshot["damage"], part.bonds.damage())
         assert snapshot["damage"][:].max() >= 0.3
-
-
-def test_stages_that_a_record_lacks_are_written_back() -> None:
-    displacement = np.arange(12.0).reshape(3, 4)
-    stages = [Stage(name, {"steps": 7}, displacement, NO_CRACKS) for name in ("static", "static/before")]
-    with h5py.File("stages", "w", driver="core", backing_store=False) as file:
-        file["static/displacement"] = np.ones((4, 3))  # is kept
-        write_stages(file, stages)
-        assert np.array_equal(file["static/displacement"], np.ones((4, 3)))
-        del file["static"]
-        write_stages(file, stages)
-        for stage in stages:
-            assert np.array_equal(file[stage.name]["displacement"], displacement.T)
-            assert file[stage.name].attrs["steps"] == 7

@@ -165,18 +165,6 @@ def test_a_snapshot_is_searched_when_it_is_used(record, change, why) -> None:
             assert why in str(refused.value)
 
 
-def test_columns_of_a_snapshot_have_a_row_for_each_particle(record) -> None:
-    def complete(file, group) -> None:
-        file.attrs["complete"] = True
-        file["particles/position"] = np.zeros((4, 2))
-        group["displacement"] = np.zeros((5, 3))
-
-    with open_record(record(odd_snapshot(complete))) as file:
-        assert snapshots_of(file)[0]["velocity"].shape == (4, 3)
-        with pytest.raises(RecordError, match=r"snapshots/0001 has columns of different lengths"):
-            snapshots_of(file)[1]
-
-
 def test_times_that_do_not_increase_are_refused(record) -> None:
     for times in ([0.0, 1.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0], [0.0, np.nan, 1.0, 2.0]):
         path = record(lambda file, times=times: file["histories/top/time"].__setitem__(..., times))

@@ -15,7 +15,6 @@ from dembound.errors import CaseError, RecordError
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
-from dembound.results.checkpoint import differences
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories
 from dembound.results.summary import arrival, read_summary, summarise
@@ -79,18 +78,6 @@ def test_numbers_that_are_not_finite_are_null(tmp_path: Path) -> None:
 
     assert found == {"a": None, "b": [1.0, None, {"c": [None, "NaN", True, None]}], "d": 1e308}
     assert [path.name for path in tmp_path.iterdir()] == ["found.json"]
-
-
-def test_differences_name_both_values_and_what_is_not_given() -> None:
-    here = {"run": {"duration": 1.0}, "boundary": {"left": {"type": "free_field"}}, "static": {"stress": None}}
-    there = {"run": {"duration": 2.0}, "boundary": {}, "static": {"stress": [1.0, 0.0, 0.0]}}
-
-    assert differences(here, here) == []
-    assert differences(here, there) == [
-        "run.duration: is 1.0 here, and 2.0 there",
-        'boundary.left: is {"type": "free_field"} here, and not given there',
-        "static.stress: is not given here, and [1.0, 0.0, 0.0] there",
-    ]
 
 
 SHORT = {"run.duration": 1e-4, "output": {"pictures": False}}

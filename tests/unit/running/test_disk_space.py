@@ -4,7 +4,7 @@ import pytest
 
 from dembound import check
 from dembound.motion.memory import in_words
-from dembound.running import plan, planning, run_case, warnings_before
+from dembound.running import plan, planning, run_case
 from dembound.running.planning import ALWAYS, results_bytes, space_warnings
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
@@ -55,14 +55,3 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     facts, warnings = check.check(planned.scene.case)
     assert facts["disk"] == f"about {need} of results; the disk has 100 kB free"
     assert warning in warnings
-
-
-def test_outputs_more_often_than_steps_are_mentioned(bar) -> None:
-    often = {"run.time_step": 1e-4, "output": {"snapshots": 101, "history_interval": 9e-5, "energy_interval": 1e-6}}
-    found = [line for line in warnings_before(plan(bar(often))) if line.startswith("output.")]
-
-    assert found == [
-        "output.snapshots: is 101, the run has 100 steps and as many snapshots",
-        "output.history_interval: is 9e-05 s, below the time step, 0.0001 s; every step is kept",
-        "output.energy_interval: is 1e-06 s, below the time step, 0.0001 s; every step is kept",
-    ]
