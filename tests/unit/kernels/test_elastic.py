@@ -13,6 +13,7 @@ from dembound.kernels.contacts import BONDED
 from dembound.kernels.elastic import contact_forces
 from dembound.kernels.loop import advance
 from dembound.kernels.near import moved
+from dembound.laws.elastic import Limits
 
 PARTICLES, CONTACTS = 30, 70
 TIME_STEP = 0.02
@@ -150,7 +151,7 @@ NO_CELLS = tables.Cells(*np.zeros((2, 1), dtype=np.int64), *np.ones((2, 2), dtyp
 def watched(bodies: Bodies, **changes: object) -> tables.WatchedLinks:
     """The law on watch over random pairs of strong bonds that start within it."""
     pairs = random_pairs(PARTICLES, CONTACTS, gap=0.3)
-    limits = tables.Limits(friction=5.0, tension=1e3, cohesion=1e3, tan_fa=0.0, geometry=BONDED)
+    limits = Limits(friction=5.0, tension=1e3, cohesion=1e3, tan_fa=0.0, geometry=BONDED)
     arms = np.full(PARTICLES, 1.1)  # half of the longest distance, and the largest difference of radii
     links, origin = bodies.links(), np.zeros((2, PARTICLES))
     return tables.WatchedLinks(links, pairs, limits, origin, 1e3, NO_CELLS, arms, np.zeros(2))._replace(**changes)
@@ -185,7 +186,7 @@ def test_a_supported_node_that_begins_to_spin_ends_the_law_at_once(bodies: Bodie
     assert model.nodes[-1] >= PARTICLES
     model.push[:] = 0.0
     model.push[:, -1, 2] = 60.0  # rad/s, prescribed
-    weak = tables.Limits(friction=5.0, tension=0.5, cohesion=1e3, tan_fa=0.0, geometry=BONDED)  # breaks soon by bending
+    weak = Limits(friction=5.0, tension=0.5, cohesion=1e3, tan_fa=0.0, geometry=BONDED)  # breaks soon by bending
     watch, parts = watched(bodies, limits=weak), (slice(0, PARTICLES), slice(PARTICLES, None))
     arms, pairs = np.concatenate([np.zeros(PARTICLES), watch.arms]), behind(watch.contacts, PARTICLES)
     later = watch._replace(links=bodies.links(begin=PARTICLES), contacts=pairs, arms=arms)
