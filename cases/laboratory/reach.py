@@ -13,7 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.targets import moduli_of
 from dembound.packings.brick import Brick
 from dembound.packings.edged_brick import EdgedBrick

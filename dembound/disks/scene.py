@@ -16,8 +16,9 @@ from dembound.disks.bearing import Springs, bearing_springs
 from dembound.disks.body import DiskBody, differs_by_level, parts_of, with_half_contacts, with_layers
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.layered import layered
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.pressure import in_run

@@ -12,7 +12,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
 from dembound.disks.contacts.layout import contact_rows
-from dembound.disks.material.packed_material import make_packed_material
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.scene_parts import Start

@@ -27,8 +27,9 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static
 from dembound.casefile.tables import ENDING
+from dembound.disks.material.case_material import nominal_moduli
 from dembound.disks.material.layered import materials_in
-from dembound.disks.material.packed_material import PackedMaterial, nominal_moduli
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
 from dembound.formulas.disks.reflections import Reflections

@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dembound.casefile.disks.targets import PlaneModuli, Target
 from dembound.disks.material.homogenise import HomogenisedMaterial, Network
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
-
-if TYPE_CHECKING:
-    from dembound.disks.material.packed_material import PackedMaterial
 
 LEAST, MOST = 0.1, 1000.0
 """Least and largest kratio searched."""

@@ -3,7 +3,8 @@
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.first_crack import FirstCrack, first_crack
-from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.material.targets import moduli_of
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square

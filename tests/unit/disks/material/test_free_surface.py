@@ -7,9 +7,10 @@ import pytest
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import free_surface
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.free_surface import _turned, cut_at, skin_depths
 from dembound.disks.material.homogenise import homogenise
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
 

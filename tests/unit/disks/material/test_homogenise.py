@@ -3,7 +3,8 @@
 import numpy as np
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.square import Square
 
 MATERIAL = Material(density=2500.0, p_wave_speed=1000.0, fric=0.5)

@@ -6,8 +6,8 @@ import tomli_w
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import layered as module
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.layered import LayeredGround, layered
-from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads

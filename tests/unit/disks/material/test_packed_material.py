@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square

@@ -5,8 +5,8 @@ import pytest
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import packed_material, targets
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.homogenise import homogenise
-from dembound.disks.material.packed_material import make_packed_material
 from dembound.disks.material.packing_waves import phase_speeds
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick

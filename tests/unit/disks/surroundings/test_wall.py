@@ -7,8 +7,9 @@ import pytest
 
 from dembound.casefile.disks.material import Material
 from dembound.continuum.mesh import Mesh
+from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.homogenise import Network
-from dembound.disks.material.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.disks.surroundings.wall import Wall, lag_of
 from dembound.kernels.tables import WallTies
