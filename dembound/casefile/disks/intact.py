@@ -1,7 +1,6 @@
 """The zones beside the sides of a body in which bonds do not break, and the springs of its bottom."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from dembound.boundaries import OPPOSITE, Boundary, normal_axis
 from dembound.boundaries.intact import INTACT, Keeping
@@ -10,33 +9,31 @@ from dembound.casefile.disks.material import STRENGTH_KEYS, Material
 from dembound.casefile.disks.static import Static
 from dembound.casefile.types import LAWS
 
-if TYPE_CHECKING:
-    from dembound.casefile.disks.model import DiskCase
 
-
-def intact_depths(case: "DiskCase") -> dict[str, int]:
+def intact_depths(
+    materials: Sequence[Material], boundary: Mapping[str, Boundary], static: Static | None
+) -> dict[str, int]:
     """Number of disks from each side, counted by bonds, whose bonds do not break; sides without any are left out.
 
     By default `INTACT` where forces of the static stage go on acting in a run in which bonds can break, and the side
     stands for ground beyond it or drives the ground. Not in samples, of which no side absorbs, is periodic, drives
     waves or says that it is artificial, nor on platens within a range.
     """
-    if not can_break(case.materials):
+    if not can_break(materials):
         return {}
     depths = {}
-    for side, table in case.boundary.items():
-        if isinstance(table, Keeping) and (depth := _depth(case, side, table)) > 0:
+    for side, table in boundary.items():
+        if isinstance(table, Keeping) and (depth := _depth(side, table, boundary, static)) > 0:
             depths[side] = depth
     return depths
 
 
-def bearing_of(case: "DiskCase") -> Bearing | None:
-    """The springs of the bottom on relative motion; None without any."""
-    table = case.side("bottom")
+def bearing_of(table: Boundary, material: Material, intact: Mapping[str, int]) -> Bearing | None:
+    """The springs of the bottom on relative motion; None without any. intact : see `intact_depths`."""
     if not isinstance(table, BearingDashpots):
         return None
     if table.bearing is None:
-        return Bearing() if LAWS[case.material.law].has_history and "bottom" in case.intact else None
+        return Bearing() if LAWS[material.law].has_history and "bottom" in intact else None
     if isinstance(table.bearing, Bearing):
         return table.bearing
     return Bearing() if table.bearing else None
@@ -55,13 +52,13 @@ def keeps_forces(static: Static | None, side: str, table: Boundary) -> bool:
     return given or side in static.boundary or table.needs_column or table.is_outside
 
 
-def _depth(case: "DiskCase", side: str, table: Keeping) -> int:
+def _depth(side: str, table: Keeping, boundary: Mapping[str, Boundary], static: Static | None) -> int:
     """The number of disks of one side, as given or by default."""
     if table.intact is not None:
         return table.intact
-    beyond = table.is_artificial or table.is_interface or _drives(side, table, case.boundary)
+    beyond = table.is_artificial or table.is_interface or _drives(side, table, boundary)
     whole = table.on_whole_side() == table
-    return INTACT if whole and beyond and keeps_forces(case.static, side, table) and _is_ground(case.boundary) else 0
+    return INTACT if whole and beyond and keeps_forces(static, side, table) and _is_ground(boundary) else 0
 
 
 def _is_ground(boundary: Mapping[str, Boundary]) -> bool:

@@ -160,12 +160,12 @@ class DiskCase(Case):
     @cached_property
     def intact(self) -> dict[str, int]:
         """Number of disks from each side, counted by bonds, whose bonds do not break; see `intact_depths`."""
-        return intact_depths(self)
+        return intact_depths(self.materials, self.boundary, self.static)
 
     @property
     def bearing(self) -> Bearing | None:
         """The springs of the bottom on the motion relative to the ground beyond it; None without any."""
-        return bearing_of(self)
+        return bearing_of(self.side("bottom"), self.material, self.intact)
 
     @property
     def free_field_sides(self) -> tuple[str, ...]:
