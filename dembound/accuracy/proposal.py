@@ -36,7 +36,7 @@ class Proposal:
         return share.upper <= bound and not share.at_least
 
     def with_causes(self, causes: Causes) -> Proposal:
-        """The same with more causes of errors."""
+        """A proposal for this choice, to whose budget causes of errors are added."""
         return replace(self, budget=replace(self.budget, causes=self.budget.causes + causes))
 
 

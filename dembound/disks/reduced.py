@@ -94,7 +94,7 @@ class OneRow(DiskScene):
 def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     """The middle one of the rows of bricks that a scene has along an axis; None if they differ in their disks.
 
-    Whether the others move as it does remains to be checked (reduction.py).
+    Whether the others move as it does remains to be checked.
     """
     case, copies, brick = scene.case, [*scene.assembly.copies], scene.ground.brick
     rows, copies[axis] = copies[axis], 1

@@ -1,4 +1,4 @@
-"""The base of all bond laws of disks: stiffnesses and constants of pairs."""
+"""The base of all contact laws of disks: stiffnesses and constants of pairs."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields

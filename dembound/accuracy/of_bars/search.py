@@ -185,7 +185,7 @@ def _otherwise(own: Motion, bound: float, kept: Sequence[str], longest: float | 
 def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
     """The first motion whose error is below a bound, else the most accurate, and the number of computed errors.
 
-    Choices whose lower bounds (floors.py) exceed the bound are skipped.
+    Choices whose lower bounds exceed the bound are skipped.
     """
     floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:

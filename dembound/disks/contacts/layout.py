@@ -170,7 +170,7 @@ def lay_out(
 ) -> tuple[Layout, tuple[Rows, ...]]:
     """The slots of the disks of a scene, and the contacts of each part between them.
 
-    A part of many copies of the brick is held in rows of copies (lane_rows.py); one of few keeps its order.
+    A part of many copies of the brick is held in rows of copies (`lane_rows`); one of few keeps its order.
     parts : their disks, in order; fraction : (n,) of its mass that each disk has. by_level : see `plan_rows`.
     """
     each = [assembly.part(disks) for disks in parts.values()]

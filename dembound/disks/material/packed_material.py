@@ -36,7 +36,7 @@ class PackedMaterial:
     brick : the packed periodic body.
     density : bulk density, kg/m³.
     moduli : micro-parameters in use, after any scaling to a wave speed.
-    law : the bond law.
+    law : the contact law.
     held : components (0 x, 1 y, 2 rotation) that are held for all particles.
     given_speeds : speeds (m/s) of P and S waves that the case gives; None for those it does not give.
     mechanisms : of its damping; None without damping. Moduli, stiffness and wave speeds are then those at the frequency

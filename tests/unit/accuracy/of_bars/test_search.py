@@ -39,7 +39,7 @@ def true_error(choice: Advised) -> float:
 def test_the_choice_is_as_accurate_as_asked_for(
     name: str, changes: Mapping[str, Any], bound: float, kept: list[str]
 ) -> None:
-    # expected errors are true ones within 3 % (test_bars.py of the estimates), which the reserve of 5 % covers
+    # expected errors are true ones within 3 % (test_causes.py), which the reserve of 5 % covers
     case = with_changes(scene(name), changes)
 
     choice = advised(case, bound, kept)
