@@ -8,7 +8,7 @@ import pytest
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED, push
 from dembound.kernels.tables import Contacts
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 PARTICLES, PAIRS = 25, 60
 STEP = 0.1

@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.kernels import tables
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, NONE, REFERENCE, SHEAR, TENSION
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
 State = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -15,7 +15,7 @@ from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses,
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
-from dembound.laws.elastic import K
+from dembound.laws.law import K
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly
 

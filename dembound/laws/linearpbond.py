@@ -10,7 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from dembound.laws.elastic import Elastic, K, Limits
+from dembound.laws.elastic import Elastic
+from dembound.laws.law import K, Limits
 from dembound.pairwise import at_most, is_pair_law, limit_of, magnitude
 
 

@@ -17,7 +17,7 @@ from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.kernels.near import approach
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly

@@ -9,7 +9,7 @@ from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.tables import Contacts
 from dembound.laws import Stiffness
-from dembound.laws.elastic import K
+from dembound.laws.law import K
 
 
 @dataclass(frozen=True, eq=False)

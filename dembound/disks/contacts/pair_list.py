@@ -9,7 +9,7 @@ from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import near
 from dembound.kernels.tables.contacts import Cells, PairRows
-from dembound.laws.elastic import Limits, in_columns
+from dembound.laws.law import Limits, in_columns
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import STRAIN

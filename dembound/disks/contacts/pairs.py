@@ -16,7 +16,7 @@ from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
 from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 from dembound.motion.kind import Finding
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.motion.trackers import Run

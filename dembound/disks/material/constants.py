@@ -12,8 +12,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
-from dembound.laws.elastic import Limits, in_columns
-from dembound.laws.law import Stiffness
+from dembound.laws.law import Limits, Stiffness, in_columns
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import PLACE

@@ -18,7 +18,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.load_factor import least_factors
-from dembound.laws.elastic import in_columns
+from dembound.laws.law import in_columns
 from dembound.laws.linearpbond import BOND_LIMITS, limit_in_words, limit_lines
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays

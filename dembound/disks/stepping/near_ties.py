@@ -17,7 +17,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT
 from dembound.kernels.tables import Contacts
-from dembound.laws.elastic import K
+from dembound.laws.law import K
 from dembound.motion.state import Arrays, State
 
 TIE_DISTANCE = 2.0

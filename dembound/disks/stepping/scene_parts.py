@@ -22,7 +22,7 @@ from dembound.disks.surroundings.continuum import Surroundings
 from dembound.kernels.contacts import UPDATED
 from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 from dembound.motion.part import Tie
 from dembound.motion.state import Layout
 from dembound.packings.tiling import Assembly

@@ -13,7 +13,7 @@ from dembound.disks.material.constants import bond_factors, brick_constants, gro
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.files import make_folder
-from dembound.laws.elastic import Limits, in_columns
+from dembound.laws.law import Limits, in_columns
 from dembound.laws.linearpbond import limit_in_words, limit_lines
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write

@@ -13,7 +13,7 @@ from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
 from dembound.kernels.near import moved
 from dembound.kernels.tables import Bonded, Cells, Contacts, Log
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 PARTICLES, PAIRS = 25, 60
 STEP = 0.1

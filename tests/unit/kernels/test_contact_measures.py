@@ -8,7 +8,7 @@ from plain_kernels import PlainPairs, one_pair, random_pairs
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE
 from dembound.kernels.tables import Contacts
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 
 def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:

@@ -21,7 +21,7 @@ from dembound.kernels.contacts import (
     UPDATED,
     start_from_displacements,
 )
-from dembound.laws.elastic import Limits, in_columns
+from dembound.laws.law import Limits, in_columns
 
 WEAK = Limits(friction=0.5, tension=0.6, cohesion=0.6, tan_fa=0.6, geometry=UPDATED)
 

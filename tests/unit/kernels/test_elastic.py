@@ -13,7 +13,7 @@ from dembound.kernels.contacts import BONDED
 from dembound.kernels.elastic import contact_forces
 from dembound.kernels.loop import advance
 from dembound.kernels.near import moved
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 PARTICLES, CONTACTS = 30, 70
 TIME_STEP = 0.02

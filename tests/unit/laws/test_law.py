@@ -11,7 +11,7 @@ from dembound.kernels.compiler.lanes import bits, byte_of, load, store
 from dembound.kernels.contacts import UPDATED, closing_work
 from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
 from dembound.laws import Elastic, Moduli, lattice_moduli
-from dembound.laws.elastic import in_columns
+from dembound.laws.law import in_columns
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 

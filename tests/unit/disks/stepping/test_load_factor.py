@@ -8,7 +8,7 @@ from small_cases import PUSHED, SPALLING, small
 
 from dembound.disks.stepping.load_factor import load_factor_in_words
 from dembound.errors import CaseError
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 from dembound.laws.linearpbond import LIMITS, limit_lines
 from dembound.running import plan, resume_case, run_case
 

@@ -7,7 +7,7 @@ from numba import config, njit
 from dembound.kernels.common import FAST, MAKES
 from dembound.kernels.compiler.bundles import Written, kind_of
 from dembound.kernels.tables import Bonded, Cells, Contacts
-from dembound.laws.elastic import Limits
+from dembound.laws.law import Limits
 
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
 
