@@ -1,9 +1,12 @@
 """Constants of pairs by hand, and beside those of the elastic law."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from dembound.casefile.types import LAWS
-from dembound.laws import Moduli
+from dembound.laws import Law, Moduli, Springs
+from dembound.laws.law import K
 
 MODULI = Moduli(emod=6e9, pb_emod=3e9, kratio=2.0, pb_kratio=3.0, pb_rmul=0.5, fric=0.4)
 RADII = np.array([0.2, 0.2, 0.2]), np.array([0.4, 0.4, 0.4])
@@ -41,3 +44,14 @@ def test_at_rest_a_pair_is_as_stiff_as_under_the_elastic_law() -> None:
     np.testing.assert_allclose(found[:, 6] + found[:, 8], elastic.shear, rtol=1e-15)
     np.testing.assert_allclose(found[:, 9], elastic.bending, rtol=1e-15)
     np.testing.assert_allclose(found[:, 2] / 2.0 + found[:, 4], elastic.arm_i, rtol=1e-15)
+
+
+def test_a_law_that_gives_springs_alone_is_complete() -> None:
+    class Stiffer(Law):
+        name = "stiffer"
+
+        def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
+            return LAWS["elastic"].springs(replace(moduli, emod=2.0 * moduli.emod), radius_i, radius_j)
+
+    found = Stiffer().pair_constants(MODULI, *RADII, VECTORS, bonded=True)
+    assert found[:, K.kn].tolist() == (2.0 * constants()[:, K.kn]).tolist()
