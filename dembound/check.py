@@ -5,7 +5,7 @@ from pathlib import Path
 
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
-from dembound.errors import RunError
+from dembound.errors import CaseError, RunError
 from dembound.formulas.first_echoes import echoes
 from dembound.machine import memory_here
 from dembound.motion.endings import peak_rule, silent_rule
@@ -67,7 +67,11 @@ def _errors(planned: Plan) -> Entries:
     case = planned.scene.case
     if not case.monitor:
         return
-    found = judge_of(case).quick(planned.scene).found
+    try:
+        found = judge_of(case).quick(planned.scene).found
+    except CaseError as error:
+        yield "errors", f"not predicted: {error}"
+        return
     sizes = {cause.name: cause.largest for cause in found if cause.how != "unknown"}
     known = f"{split_in_words(sizes)} by formula; " if sizes else ""
     yield "errors", f"{known}dembound advise predicts {'the others' if known else 'them'} and finds cheaper cases"

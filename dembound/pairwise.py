@@ -92,6 +92,60 @@ def limit_of(limit: Any, contact_type: Any) -> Any:
     return limit if isinstance(limit, float) else limit[contact_type]
 
 
+def _slips_by_overlap(limits):
+    return False
+
+
+def _slip_after(limits, constants, k, before, now, shear, slip):
+    return slip
+
+
+def _rubbed(limits, constants, k, before, now, was, shear, slip, slid, force, pushed):
+    return 0.5 * (force + pushed) * (slid - slip)
+
+
+def _viscosity(limits, constants, k, overlap):
+    return 1.0
+
+
+def _contact_room(limits, constants, k, kind, overlap, stuck):
+    return 0.0 * overlap
+
+
+def _bond(limits, constants, k, stretch, shear, turn):
+    return 0.0 * stretch, 0.0 * shear, 0.0 * turn
+
+
+def _breaks(limits, constants, k, kind, factor, pull, side, moment):
+    return at_most(1.0, 0.0 * pull), at_most(1.0, 0.0 * side)
+
+
+def _bond_energy(limits, constants, k, stretch, shear, turn):
+    return 0.0
+
+
+def _bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
+    return np.inf
+
+
+DEFAULTS: dict[str, Callable[..., Any]] = {
+    "slips_by_overlap": _slips_by_overlap,
+    "slip_after": _slip_after,
+    "rubbed": _rubbed,
+    "viscosity": _viscosity,
+    "contact_room": _contact_room,
+    "bond": _bond,
+    "breaks": _breaks,
+    "bond_energy": _bond_energy,
+    "bond_room": _bond_room,
+}
+"""Functions that a law may leave out.
+
+They are those of contacts whose stiffness in shear and viscosity do not depend on the overlap, without bonds, and under
+a law that does not begin elastic.
+"""
+
+
 PAIR_LAWS: dict[type, dict[str, Callable[..., Any]]] = {}
 """Type of the limits of a law -> its functions, by the names in kernels/pair_law.py."""
 
@@ -103,9 +157,9 @@ def is_pair_law(limits: type, **functions: Callable[..., Any]) -> None:
     pair and for lanes of eight, with `choose`, `at_most`, `larger`, `magnitude`, `with_sign` and `root` in place of
     conditions.
     """
-    PAIR_LAWS[limits] = functions
+    PAIR_LAWS[limits] = DEFAULTS | functions
     for compiled in COMPILERS:
-        compiled(limits, functions)
+        compiled(limits, PAIR_LAWS[limits])
 
 
 COMPILERS: list[Callable[[type, dict[str, Callable[..., Any]]], None]] = []

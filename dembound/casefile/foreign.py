@@ -3,6 +3,9 @@
 import re
 from collections.abc import Collection
 
+from dembound.casefile.types import LAWS
+
+_LAWS = " or ".join(f'"{name}"' for name in LAWS)
 _MORE = "; see docs: start/from_pfc"
 """Reference to the page with more information, at the end of a line."""
 
@@ -157,8 +160,8 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("", f"there is none: only bonds resist rotation{_MORE}"),
     ),
     ("model", "contact_model", "cmat", "bond_type", "contact_type", "cm_type"): (
-        ("law", 'write law, "elastic" or "linearpbond"'),
-        ("material", f'[material] has law, "elastic" or "linearpbond"{_MORE}'),
+        ("law", f"write law, {_LAWS}"),
+        ("material", f"[material] has law, {_LAWS}{_MORE}"),
     ),
     ("contact", "contacts", "bond", "bonds", "property", "properties", "materials"): (
         ("material", f"one [material] is for all contacts and bonds{_MORE}"),
@@ -292,8 +295,7 @@ VALUES = {
     ("pml", "cpml", "perfectly_matched_layer", "infinite", "infinite_element", "semi_infinite"): "outside",
     ("clamped", "pinned", "rigid", "wall"): "fixed",
     ("cyclic", "periodic_space"): "periodic",
-    ("linear_parallel_bond", "parallel_bond", "pbond", "linearparallelbond", "parallelbond"): "linearpbond",
-    ("linear", "hooke", "hookean"): "elastic",
+    **{law.elsewhere: name for name, law in LAWS.items() if law.elsewhere},
     ("hexagonal", "square", "lattice", "cubic", "regular"): "A",
     ("random", "dense", "irregular"): "B",
     ("sine", "sin", "harmonic", "sinusoidal"): "sine_burst",

@@ -17,6 +17,7 @@ from dembound.disks.body import DiskBody, differs_by_level, parts_of, with_half_
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
+from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import layered
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
@@ -275,7 +276,7 @@ def ground_of(case: DiskCase) -> PackedMaterial:
         for place, each in reversed([*zip(places, case.materials, strict=True)])
     ]
     if len(materials) == 1:
-        return materials[0]
+        return confined(materials[0], case)
     return layered(materials, case.joints[::-1], case.packing.origin[1])
 
 

@@ -29,6 +29,13 @@ energy grows by orders of magnitude within a thousand steps. Below this limit th
 """
 
 
+RESERVE, LOOSE = 4.0, 1e-2
+"""Overlap for which the step limit holds under a law whose stiffness grows with it.
+
+The first is times the largest one at rest, the second a share of the smallest radius, without pressure. The step goes
+with their power −¼: for four times the overlap it is 0.71 times as long.
+"""
+
 Filling = Callable[[np.ndarray, np.ndarray], None]
 """Fills or changes its second argument (3, slots) with forces at displacements, its first one."""
 
@@ -54,7 +61,7 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     bounds = [(_largest_eigenvalue(scene), 0.0)]
     if scene.has_history:
         zones, dashed = _zones_of(scene.ground), viscous and scene.case.material.has_dashpots
-        opens = any(layer.moduli.emod > 0.0 for layer in scene.ground.materials)
+        opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.ground.materials)
         if dashed:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
         bounds += [(_loose_eigenvalue(zone), _loose_viscosity(scene, zone) if dashed else 0.0) for zone in zones]
@@ -187,9 +194,38 @@ def _loose_eigenvalue(ground: PackedMaterial) -> float:
     With contacts and no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
     24k_s/m, when all disks rotate in the same way; the sum is a bound for both together.
     """
-    moduli = ground.moduli
-    shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
-    return (6.0 * moduli.emod + 24.0 * shear) / float(ground.mass.min())
+    normal, shear = _loose_springs(ground)
+    return (6.0 * normal + 24.0 * shear) / float(ground.mass.min())
+
+
+def _loose_springs(ground: PackedMaterial) -> tuple[float, float]:
+    """Largest normal and shear stiffness (N/m) of contacts of the smallest disks, up to `reserve` where they vary."""
+    moduli, radii = ground.moduli, ground.brick.radii
+    if ground.overlaps is None:
+        return moduli.emod, moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
+    found = ground.law.springs_at(moduli, radii.min(), radii.max(), np.array(reserve(ground)))
+    return float(found.contact_normal), float(found.contact_shear)
+
+
+def reserve(ground: PackedMaterial) -> float:
+    """Overlap (m) up to which the step limit holds, where contacts are stiffer with it."""
+    assert ground.overlaps is not None
+    return RESERVE * float(ground.overlaps.max()) if ground.has_stiffness else LOOSE * float(ground.brick.radii.min())
+
+
+def largest_overlap(scene: DiskScene, step: float) -> float:
+    """Overlap (m) of contacts up to which a step (s) is stable; infinite where their stiffness does not grow with it.
+
+    The stiffness grows with the root of the overlap, so that the overlap goes with the power −4 of the step, also with
+    dashpots, whose viscosity grows with the root of the stiffness.
+    """
+    ground = scene.ground
+    if ground.overlaps is None:
+        return float("inf")
+    dashed = _loose_viscosity(scene, ground) if scene.case.material.has_dashpots else 0.0
+    damp = 1.0 + scene.case.material.damp
+    limit = _step_of(_loose_eigenvalue(ground) / OPENING * damp, dashed * damp)
+    return reserve(ground) * (limit / step) ** 4
 
 
 def _loose_viscosity(scene: DiskScene, ground: PackedMaterial) -> float:
@@ -197,9 +233,8 @@ def _loose_viscosity(scene: DiskScene, ground: PackedMaterial) -> float:
 
     With dashpots c_n and c_s it is 24c_s/m, when all disks rotate in the same way, or (6c_n + 2c_s)/m.
     """
-    material, moduli, mass = scene.case.material, ground.moduli, float(ground.mass.min())
-    shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
-    springs, ratios = np.array([moduli.emod, shear]), np.array([material.dp_nratio, material.dp_sratio])
+    material, mass = scene.case.material, float(ground.mass.min())
+    springs, ratios = np.array(_loose_springs(ground)), np.array([material.dp_nratio, material.dp_sratio])
     normal, sheared = viscosity(ratios, springs, mass, mass).tolist()
     return max(24.0 * sheared, 6.0 * normal + 2.0 * sheared) / mass
 

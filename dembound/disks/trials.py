@@ -11,6 +11,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.types import LAWS, linear_law
 from dembound.disks import stability, step_cost
 from dembound.disks.scene import DiskScene, build, ground_of
+from dembound.disks.small_motion import small_motion
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.part import System
@@ -29,18 +30,27 @@ UNLOADED = (
 """Note on the largest step measured under a law with contacts that open."""
 
 
+STIFFENS = (
+    'the elastic law with the stiffness at rest: contacts of law "{}" grow stiffer, which a run watches, and its step '
+    "limit includes a reserve"
+)
+"""Note on the trial of a law that does not start elastic."""
+
+
 def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
     """A body of disks under the linear law, and under the case's own law if that differs.
 
     Returns also one sentence for each difference from the case. full : the whole scene, instead of fewer copies of
     the brick. Raises the errors of building a scene.
     """
+    words = [] if LAWS[case.material.law].starts_elastic else [STIFFENS.format(case.material.law)]
+    case = small_motion(case)
     plain = replace(at_rest(case), static=None, monitor=(), incident=None)
     whole = build(case)
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seam is not None else ())
-    words = left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
         words = [*about, *words]

@@ -8,13 +8,12 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels import bonded as law
-from dembound.kernels.common import FAST, U
+from dembound.kernels.common import FAST, INLINED, U
 from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
 from dembound.kernels.lane_step import (
-    INLINED,
     blocks_of,
     first_at,
     go_on,

@@ -20,6 +20,9 @@ a thousand nodes of a bar. Such functions cannot create arrays. The code by whic
 takes long to compile, is left out.
 """
 
+INLINED: dict[str, Any] = FAST | {"inline": "always"}
+"""Options of small functions, which become part of the loops that call them."""
+
 MAKES = FAST | {"_nrt": True}
 """Compiler options of functions that create arrays."""
 

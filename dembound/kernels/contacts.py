@@ -18,7 +18,18 @@ from dembound.kernels.compiler.lanes import choose, larger
 from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
-from dembound.kernels.pair_law import bond, breaks, most_shear, normal, shear_of, slip_at, stored_between
+from dembound.kernels.pair_law import (
+    bond,
+    breaks,
+    most_shear,
+    normal,
+    rubbed,
+    shear_of,
+    slip_after,
+    slip_at,
+    slips_by_overlap,
+    stored_between,
+)
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 from dembound.pairwise import P
 
@@ -69,7 +80,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     constants, began, state, force = contacts.constants, contacts.began, contacts.state, contacts.force
     all_shear, all_slip, closed, cracked = contacts.shear, contacts.slip, contacts.closed, contacts.cracked
     geometry = limits.geometry
-    rubbed = 0.0
+    taken = 0.0
     i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
     intact = state[c] == INTACT
     keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
@@ -85,7 +96,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     arm_j = distance - arm_i
     slip = all_slip[c]
     N = normal(limits, constants, k, overlap)
-    S = shear_of(limits, constants, k, shear, slip)
+    S = shear_of(limits, constants, k, overlap, shear, slip)
     opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
     if geometry != REFERENCE or constants[k, P.touch] < constants[k, P.rest]:
         N = max(N, 0.0)
@@ -95,16 +106,22 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         if closed[c] != 0 or (overlapped <= 0.0) != (overlap <= 0.0):
             lost[2] += closing_work(limits, constants, k, overlapped, overlap, closed[c] != 0, N)
             closed[c] = overlapped <= 0.0 < overlap
+        slid = slip
+        if slips_by_overlap(limits):
+            slid = slip_after(limits, constants, k, overlapped, overlap, was, slip)
+            S = shear_of(limits, constants, k, overlap, shear, slid)
         most = most_shear(limits, k, N)
-        if abs(S) > most:
-            before = shear_of(limits, constants, k, was, slip)
-            S = np.copysign(most, S)
-            slid = slip_at(limits, constants, k, shear, S)
-            rubbed = 0.5 * (before + S) * (slid - slip)
+        slides = abs(S) > most
+        if slides or slips_by_overlap(limits):
+            before = shear_of(limits, constants, k, overlapped, was, slip)
+            if slides:
+                S = np.copysign(most, S)
+                slid = slip_at(limits, constants, k, overlap, shear, S)
+            taken = rubbed(limits, constants, k, overlapped, overlap, was, shear, slip, slid, before, S)
             all_slip[c] = slid
-            if rubbed < 0.0:  # the force has changed its sign within the step
-                lost[2] += rubbed
-                rubbed = 0.0
+            if taken < 0.0:  # the force has changed its sign within the step
+                lost[2] += taken
+                taken = 0.0
     pull = -N
     moment = 0.0
     if intact:
@@ -134,7 +151,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
     force[U(1), c] = pull * ny + S * nx
     force[U(2), c] = arm_i * S + moment
     force[U(3), c] = arm_j * S - moment
-    return rubbed
+    return taken
 
 
 @in_chunks
@@ -142,13 +159,13 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
 def _push(first_chunk, last_chunk, u, v, step, number, contacts, limits, lost, begin):
     b = contacts.first.size - begin
     for chunk in range(first_chunk, last_chunk):
-        rubbed = 0.0
+        taken = 0.0
         own = lost[chunk]
         for k in range(4):
             own[k] = 0.0
         for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
-            rubbed += push_pair(U(p), u, v, step, number, contacts, limits, own)
-        own[0] = rubbed
+            taken += push_pair(U(p), u, v, step, number, contacts, limits, own)
+        own[0] = taken
 
 
 @njit(**FAST)

@@ -17,6 +17,7 @@ from dembound.kernels.law import is_law
 from dembound.kernels.law import move as move_law
 from dembound.kernels.law import push as push_law
 from dembound.kernels.pair_law import normal
+from dembound.kernels.pair_law import viscosity as viscosity_of
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
 from dembound.kernels.tables import Dashed
 from dembound.pairwise import P
@@ -51,8 +52,9 @@ def _drag(first_chunk, last_chunk, u, v, step, contacts, limits, viscosity, drag
             push = 0.0
             rub = 0.0
             if overlap > 0.0:
-                push = max(viscosity[c, U(0)] * closing, -normal(limits, constants, k, overlap))
-                rub = viscosity[c, U(1)] * sliding
+                share = viscosity_of(limits, constants, k, overlap)
+                push = max(share * viscosity[c, U(0)] * closing, -normal(limits, constants, k, overlap))
+                rub = share * viscosity[c, U(1)] * sliding
             lost += 0.5 * step * ((drag[c, U(0)] + push) * closing + (drag[c, U(1)] + rub) * sliding)
             drag[c, U(0)] = push
             drag[c, U(1)] = rub

@@ -2,12 +2,9 @@
 
 from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, REST, U
+from dembound.kernels.common import CHUNKS, FAST, INLINED, REST, U
 from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, store, with_sign
 from dembound.kernels.elastic import row_force
-
-INLINED = FAST | {"inline": "always"}
-"""Options of small functions, which become part of the loops that call them."""
 
 
 @njit(**INLINED)

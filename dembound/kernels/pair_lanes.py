@@ -7,7 +7,7 @@ and, where intact bonds keep the geometry of the start, from then on.
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
+from dembound.kernels.common import CHUNKS, FAST, INLINED, MAKES, U, column_sum
 from dembound.kernels.compiler.lanes import (
     LANES,
     at_most,
@@ -28,8 +28,19 @@ from dembound.kernels.compiler.limits import factors_of
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, closing_work, push_pair
-from dembound.kernels.lane_step import INLINED, next_place, place_of
-from dembound.kernels.pair_law import acts, bond, breaks, most_shear, normal, shear_of, slip_at
+from dembound.kernels.lane_step import next_place, place_of
+from dembound.kernels.pair_law import (
+    acts,
+    bond,
+    breaks,
+    most_shear,
+    normal,
+    rubbed,
+    shear_of,
+    slip_after,
+    slip_at,
+    slips_by_overlap,
+)
 from dembound.pairwise import P
 
 _ALL = np.uint8(2**LANES - 1)
@@ -67,7 +78,7 @@ def _contact(
     overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
     slip = load(contacts.slip, c)
     N = normal(limits, k, q, overlap)
-    S = shear_of(limits, k, q, shear, slip)
+    S = shear_of(limits, k, q, overlap, shear, slip)
     if gives_way:
         overlapped = overlap + step * opening
         was_open = at_most(overlapped, 0.0)
@@ -80,16 +91,23 @@ def _contact(
             passed = closing_work(limits, k, q, overlapped, overlap, had_closed, N)
             _add(taken, LANES, choose(bits(passes), passed, 0.0))
             note_bits(contacts.closed, c, bits(np.uint8(was & ~now & exists)))
+        slid = slip
+        if slips_by_overlap(limits):
+            was = shear - step * _slide(way, arms, i, j, v)
+            slid = slip_after(limits, k, q, overlapped, overlap, was, slip)
+            S = shear_of(limits, k, q, overlap, shear, slid)
         most = most_shear(limits, kind, N)
         stays = at_most(magnitude(S), most)
-        if (byte_of(stays) & exists) != exists:
-            before = shear_of(limits, k, q, shear - step * _slide(way, arms, i, j, v), slip)
+        if slips_by_overlap(limits) or (byte_of(stays) & exists) != exists:
+            was = shear - step * _slide(way, arms, i, j, v)
+            before = shear_of(limits, k, q, overlapped, was, slip)
             S = choose(stays, S, with_sign(most, S))
-            slid = choose(stays, slip, slip_at(limits, k, q, shear, S))
-            rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
+            slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
+            loss = rubbed(limits, k, q, overlapped, overlap, was, shear, slip, slid, before, S)
+            loss = choose(bits(exists), loss, 0.0)
             store(contacts.slip, c, slid)
-            _add(taken, 0, larger(rubbed, 0.0))
-            _add(taken, LANES, choose(at_most(rubbed, 0.0), rubbed, 0.0))
+            _add(taken, 0, larger(loss, 0.0))
+            _add(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
     return N, S
 
 

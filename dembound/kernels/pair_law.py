@@ -9,12 +9,9 @@ from typing import Any
 
 from numba import njit
 
-from dembound.kernels.common import FAST
+from dembound.kernels.common import INLINED
 from dembound.kernels.law import answer, generic
 from dembound.pairwise import COMPILERS, PAIR_LAWS
-
-INLINED: dict[str, Any] = FAST | {"inline": "always"}
-"""Options of small functions, which become part of the loops that call them."""
 
 
 @generic
@@ -33,13 +30,31 @@ def stored_between(limits, constants, k, before, now):
 
 
 @generic
-def shear_of(limits, constants, k, shear, slip):
-    """Shear force (N) of a contact that does not slide, whose surfaces moved by `shear` (m) and slid by `slip` (m)."""
+def shear_of(limits, constants, k, overlap, shear, slip):
+    """Shear force (N) of a contact of this overlap (m), whose surfaces moved by `shear` (m) and slid by `slip` (m)."""
 
 
 @generic
-def slip_at(limits, constants, k, shear, force):
-    """Slip (m) of a contact that bears a shear force (N) after a motion of its surfaces of `shear` (m)."""
+def slip_at(limits, constants, k, overlap, shear, force):
+    """Slip (m) of a contact of this overlap (m) that bears a shear force (N) after a motion of `shear` (m)."""
+
+
+@generic
+def slips_by_overlap(limits):
+    """Whether the slip of contacts also changes with their overlap; a constant, True or False."""
+
+
+@generic
+def slip_after(limits, constants, k, before, now, shear, slip):
+    """Slip (m) of a contact whose overlap has changed from `before` to `now` (m); shear : motion (m) until then."""
+
+
+@generic
+def rubbed(limits, constants, k, before, now, was, shear, slip, slid, force, pushed):
+    """Energy (J) that a contact takes by its shear in a step in which its slip changes from `slip` to `slid` (m).
+
+    before, now : overlap; was, shear : motion of its surfaces (m); force, pushed : shear force (N), before and after.
+    """
 
 
 @generic
@@ -55,6 +70,11 @@ def bond(limits, constants, k, stretch, shear, turn):
 @generic
 def breaks(limits, constants, k, kind, factor, pull, side, moment):
     """Whether a bond breaks in tension, and whether in shear, under its forces; factor : of its strengths."""
+
+
+@generic
+def viscosity(limits, constants, k, overlap):
+    """Viscosity of a contact of this overlap (m), over the one of its dashpots."""
 
 
 @generic

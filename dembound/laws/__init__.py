@@ -4,10 +4,11 @@ A new law is one file and its class's name in `TYPES`; another package registers
 """
 
 from dembound.laws.elastic import Elastic
+from dembound.laws.hertz import Hertz
 from dembound.laws.law import Law, Moduli, Springs, Stiffness, lattice_moduli
 from dembound.laws.linearpbond import LinearPBond
 
-TYPES: tuple[type[Law], ...] = (Elastic, LinearPBond)
+TYPES: tuple[type[Law], ...] = (Elastic, LinearPBond, Hertz)
 """All laws."""
 
-__all__ = ["TYPES", "Elastic", "Law", "LinearPBond", "Moduli", "Springs", "Stiffness", "lattice_moduli"]
+__all__ = ["TYPES", "Elastic", "Hertz", "Law", "LinearPBond", "Moduli", "Springs", "Stiffness", "lattice_moduli"]

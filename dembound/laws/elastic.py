@@ -15,6 +15,8 @@ class Elastic(Law):
     """Contacts and parallel bonds whose forces are linear in small displacements."""
 
     name: ClassVar[str] = "elastic"
+    elsewhere: ClassVar[tuple[str, ...]] = ("linear", "hooke", "hookean")
+    help: ClassVar[str] = "linear"
 
     def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
         """Springs of closed, bonded contacts between disks of radii (b,) m.

@@ -1,8 +1,9 @@
 """The base of all contact laws of disks: stiffnesses and constants of pairs."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,19 @@ class Moduli:
     pb_kratio: float = 1.0
     pb_rmul: float = 1.0
     fric: float = 0.0
+
+
+class Key(NamedTuple):
+    """A key of [material] that a law adds: its name, unit, kind of number (`meanings`), meaning and limits.
+
+    limits : constraints of pydantic, as gt.
+    """
+
+    name: str
+    unit: str
+    means: str
+    help: str
+    limits: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -111,11 +125,24 @@ class Law(ABC):
     name : value of `material.law`.
     columns : constants of pairs, those of pairwise.PLACE first; by default of springs of contact and bond.
     has_history : whether contacts open, slide and break (kernels/contacts.py).
+    starts_elastic : whether a linear law with the same springs holds until a contact opens or slides, whatever the
+    stress. If not, springs are those of small motion about the stress at rest, and there are none without.
+    secant : force over displacement from no force over the stiffness of small motion, normal and in shear.
+    strengths : names of the limits at which bonds break.
+    keys : of [material] that it adds, all required under it; uses : names of others that it has a use for, None for
+    all. elsewhere : its names in other codes. help : what contacts and bonds do under it, in a few words.
     """
 
     name: ClassVar[str]
     columns: ClassVar[tuple[Column, ...]] = COLUMNS
     has_history: ClassVar[bool] = False
+    starts_elastic: ClassVar[bool] = True
+    strengths: ClassVar[tuple[str, ...]] = ("tension", "cohesion")
+    secant: ClassVar[tuple[float, float]] = (1.0, 1.0)
+    keys: ClassVar[tuple[Key, ...]] = ()
+    uses: ClassVar[tuple[str, ...] | None] = None
+    elsewhere: ClassVar[tuple[str, ...]] = ()
+    help: ClassVar[str] = ""
 
     @property
     def width(self) -> int:
@@ -149,7 +176,28 @@ class Law(ABC):
         """Name of the linear law that has the same stiffness at rest; required for a history-dependent law."""
         return self.name
 
-    def without_limits(self, geometry: int) -> Limits:
+    def moduli(self, given: Any) -> Moduli:
+        """Micro-parameters of a material with given moduli, a table [material]."""
+        return Moduli(given.emod, given.pb_emod, given.kratio, given.pb_kratio, given.pb_rmul, given.fric)
+
+    def limits(self, strength: Limits) -> Any:
+        """What the functions of the law get of the limits of a material; they are found by its type."""
+        return strength
+
+    def springs_at(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, overlap: np.ndarray) -> Springs:
+        """Springs of small motion about overlaps (b,) m; the same for all under a law that starts elastic."""
+        return self.springs(moduli, radius_i, radius_j)
+
+    def overlap_of(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, push: np.ndarray) -> np.ndarray:
+        """Overlaps (b,) m at which contacts push with forces (b,) N, 0 for pulling ones."""
+        found: np.ndarray = np.maximum(push, 0.0) / self.springs(moduli, radius_i, radius_j).contact_normal
+        return found
+
+    def dashpot_springs(self, constants: np.ndarray) -> np.ndarray:
+        """Normal and shear stiffnesses (p, 2) N/m of pairs from which the viscosity of their dashpots follows."""
+        return constants[:, [int(K.kn), int(K.ks)]]
+
+    def without_limits(self, geometry: int) -> Any:
         """Limits that no contact or bond reaches, in a geometry of kernels/contacts.py."""
         return Limits(0.0, np.inf, np.inf, 0.0, geometry)
 
@@ -157,13 +205,21 @@ class Law(ABC):
     def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
         """Springs of closed, bonded contacts between disks of radii (b,) m."""
 
-    def stiffness(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> Stiffness:
+    def stiffness(
+        self,
+        moduli: Moduli,
+        radius_i: np.ndarray,
+        radius_j: np.ndarray,
+        distance: np.ndarray,
+        overlap: np.ndarray | None = None,
+    ) -> Stiffness:
         """Stiffnesses of contacts between disks of radii (b,) m whose centres are `distance` (b,) m apart.
 
         Contact and bond together; across a gap only the bond. The arms end in the middle of the overlap or gap and
-        their sum is the distance, so moments balance.
+        their sum is the distance, so moments balance. overlap : (b,) m at rest, for a law that does not start elastic.
         """
-        pair = self.springs(moduli, radius_i, radius_j)
+        given = (moduli, radius_i, radius_j)
+        pair = self.springs(*given) if overlap is None else self.springs_at(*given, overlap)
         closed = touching(radius_i, radius_j, distance)
         return Stiffness(
             normal=np.where(closed, pair.contact_normal, 0.0) + pair.bond_normal,

@@ -20,6 +20,14 @@ class LinearPBond(Elastic):
 
     name: ClassVar[str] = "linearpbond"
     has_history: ClassVar[bool] = True
+    elsewhere: ClassVar[tuple[str, ...]] = (
+        "linear_parallel_bond",
+        "parallel_bond",
+        "pbond",
+        "linearparallelbond",
+        "parallelbond",
+    )
+    help: ClassVar[str] = "contacts open and slip, bonds break for good"
 
     @property
     def linear(self) -> str:
@@ -42,12 +50,12 @@ def stored_between(limits, constants, k, before, now):
     return 0.5 * (constants[k, K.kn] * ((now - before) * (now + before)))
 
 
-def shear_of(limits, constants, k, shear, slip):
+def shear_of(limits, constants, k, overlap, shear, slip):
     """S = k_s (s − slip), see pair_law.shear_of."""
     return constants[k, K.ks] * (shear - slip)
 
 
-def slip_at(limits, constants, k, shear, force):
+def slip_at(limits, constants, k, overlap, shear, force):
     """The slip s − S/k_s, see pair_law.slip_at."""
     return shear - force * (1.0 / constants[k, K.ks])
 

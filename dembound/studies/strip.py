@@ -15,6 +15,7 @@ from dembound.casefile.types import linear_law
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.scene import build, ground_of
 from dembound.disks.sides import boundary_medium
+from dembound.disks.small_motion import small_motion
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.motion.simulation import Simulation
@@ -89,14 +90,15 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
 
     Raises CaseError for a law that is not linear.
     """
+    given, case = case, small_motion(case)
     boundary = {side: table.dashpots_alone() for side, table in case.boundary.items()}
     material = case.material.model_copy(update={"law": linear_law(case.material.law)})
     left_out = {
         **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
         "no holes": bool(case.hole),
-        "no static stage": case.static is not None,
+        "no static stage": given.static is not None,
         "no loads": bool(case.load),
-        f"the {material.law} law": case.material.law != material.law,
+        f"the {material.law} law": given.material.law != material.law,
     }
     plain = replace(case, boundary=boundary, material=material, static=None, hole=(), load=())
     return plain, [sentence for sentence, applies in left_out.items() if applies]

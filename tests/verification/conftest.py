@@ -13,6 +13,7 @@ from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
 from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.confined import confined
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.scene_parts import Start
@@ -80,7 +81,7 @@ class Lab:
         if pattern == "C":
             packing = {"edge_radius": 0.26} | packing
         material = {"density": DENSITY} | (material or {})
-        if "emod" not in material:
+        if not {"emod", "hz_shear"} & material.keys():
             material["p_wave_speed"] = SPEED
         tables = {
             "packing": {"pattern": pattern, "size": size, "radius": RADIUS} | packing,
@@ -158,7 +159,7 @@ class Lab:
         case = self.case("A", (self.diameter, self.diameter), **words)
         nothing = np.zeros_like(bonds), np.zeros((len(radii), 2), bool), np.zeros(3)
         brick = Brick(box, positions, radii, bonds, *nothing, residual_ratio=0.0)
-        ground = make_packed_material(brick, case.material, case.motion.held)
+        ground = confined(make_packed_material(brick, case.material, case.motion.held), case)
         ground = replace(ground, given_speeds=(ground.given_speeds[0], s_speed))
         twins, types = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
         tiles = np.zeros((len(radii), 2), dtype=np.int32)

@@ -248,6 +248,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
+        require_linear(scene.case.material.law)
         return quick_causes(scene)
 
 

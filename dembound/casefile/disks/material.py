@@ -1,9 +1,10 @@
 """The ``[material]`` table."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from pydantic import model_validator
+from pydantic import create_model, model_validator
 
+from dembound.casefile.disks.law import FIELDS, keys_problems, with_history
 from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Scatter, Target
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
@@ -26,19 +27,15 @@ HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS)
 """Keys for history-dependent laws only."""
 
 
-def with_history() -> str:
-    """The history-dependent laws, for messages."""
-    return " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
-
-
-class Material(Table):
+class MaterialTable(Table):
     """Density, and contacts and bonds by PFC's names; stiffness is given, or follows from wave speeds or targets.
 
     Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds of the body: moduli and `kratio` =
     `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
     `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
-    "linearpbond" is PFC's, and alone has `locked_in`, `geometry`, `elastic_start` and the dashpots c = 2β√(m_c k), m_c
-    = m₁m₂/(m₁ + m₂). Strengths are for it and for `output.load_factor`.
+    "linearpbond" is PFC's, and alone has `locked_in`, `geometry` and `elastic_start`. Strengths are for it and for
+    `output.load_factor`. Under "hertz" the stiffness follows from `hz_shear`, `hz_poiss` and the stress at rest,
+    `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
     density: float = quantity(
@@ -133,7 +130,7 @@ class Material(Table):
     law: LawName = quantity(
         "elastic",
         unit="1",
-        help='"elastic": linear; "linearpbond": contacts open and slip, bonds break for good',
+        help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help),
     )
     pb_ten: float | None = quantity(
         None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
@@ -172,23 +169,32 @@ class Material(Table):
     )
 
     @model_validator(mode="after")
-    def _consistent(self) -> "Material":
+    def _consistent(self) -> "MaterialTable":
+        law = LAWS[self.law]
+        problems = [*keys_problems(self, self.law, (*STIFFNESS_KEYS, *RATIO_KEYS, *WAVE_SPEED_KEYS, *TARGET_KEYS))]
+        if law.uses is not None:
+            problems += self._problems_with_dashpots() if self.has_dashpots else []
+            return self._without(problems)
         if len(self._pair) > 0:
-            problems = self._problems_with_target()
+            problems += self._problems_with_target()
         else:
-            problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+            problems += self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
             problems += [
                 f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
                 for key in TARGET_KEYS
                 if key in self.model_fields_set
             ]
         problems += self._problems_with_strength()
-        if not LAWS[self.law].has_history:
+        if not law.has_history:
             problems += self._problems_without_history()
         if self.has_dashpots:
             problems += self._problems_with_dashpots()
         if self.quality_factor is not None:
             problems += self._problems_with_quality()
+        return self._without(problems)
+
+    def _without(self, problems: list[str]) -> "MaterialTable":
+        """The table; raises ValueError with the problems, if there are any."""
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -268,7 +274,7 @@ class Material(Table):
     @property
     def begins_elastic(self) -> bool:
         """Whether the elastic law serves first in place of a history-dependent one; it has no dashpots."""
-        return self.elastic_start and not self.has_dashpots
+        return self.elastic_start and not self.has_dashpots and LAWS[self.law].starts_elastic
 
     def _problems_with_dashpots(self) -> list[str]:
         """What dashpots of contacts do not go with."""
@@ -336,3 +342,12 @@ class Material(Table):
             given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]
             problems += [f"{key}: is the strength of bonds, but {no_bonds} leaves none" for key in given]
         return problems
+
+
+if TYPE_CHECKING:
+    Material = MaterialTable
+else:
+    Material = create_model(
+        "Material", __base__=MaterialTable, __doc__=MaterialTable.__doc__, __module__=__name__, **FIELDS
+    )
+    """The table with the keys that laws add."""

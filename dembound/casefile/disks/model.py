@@ -150,7 +150,7 @@ class DiskCase(Case):
     @property
     def begins_stressed(self) -> bool:
         """Whether contacts begin with the forces of a stress at rest, see `static.begins_stressed`."""
-        return self.static is not None and begins_stressed(self.static, self.boundary)
+        return self.static is not None and begins_stressed(self.static, self.boundary, self.material)
 
     @property
     def entering(self) -> set[str]:

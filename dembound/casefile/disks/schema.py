@@ -11,9 +11,10 @@ from dembound.boundaries.platen import beside_disks
 from dembound.casefile.disks.damping import Damping, damping_problems, is_damped
 from dembound.casefile.disks.ground import Ground, ground_problems, hole_problems, lowered_in, lowered_problems, reach
 from dembound.casefile.disks.incident import IncidentWave, Motion, incident_problems, motion_problems
+from dembound.casefile.disks.law import law_problems, with_history
 from dembound.casefile.disks.layer import Layer, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
-from dembound.casefile.disks.material import BOND_KEYS, Material, with_history
+from dembound.casefile.disks.material import BOND_KEYS, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
 from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static, static_problems
@@ -72,6 +73,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])
     yield from hole_problems(tables, "static" in given)
     yield from lowered_problems(tables)
+    yield from law_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["damping"] and tables["material"]:

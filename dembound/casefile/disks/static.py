@@ -8,7 +8,7 @@ from dembound.casefile.disks.incident import Motion
 from dembound.casefile.disks.load import Load, gravity
 from dembound.casefile.disks.material import Material
 from dembound.casefile.messages import numbered
-from dembound.casefile.types import StaticSide
+from dembound.casefile.types import LAWS, StaticSide
 from dembound.table import Table, quantity
 
 RATIO = 1e-5
@@ -75,11 +75,15 @@ class Static(Table):
         return self.ratio or (RATIO_SLIDING if slides else RATIO)
 
 
-def begins_stressed(static: Static, boundaries: Mapping[str, Boundary | None]) -> bool:
-    """Whether contacts begin with the forces of a stress at rest: with K0, or beside sides that could not apply it."""
+def begins_stressed(static: Static, boundaries: Mapping[str, Boundary | None], material: Material | None) -> bool:
+    """Whether contacts begin with the forces of a stress at rest.
+
+    They do with K0, beside sides that could not apply the stress, and under a law without stiffness but for it.
+    """
     tables = [table for table in boundaries.values() if table]
     beside = any(table.is_periodic or table.needs_column or table.is_outside for table in tables)
-    return static.k0 is not None or (static.stress is not None and beside)
+    needed = material is not None and not LAWS[material.law].starts_elastic
+    return static.k0 is not None or (static.stress is not None and (beside or needed))
 
 
 Sides = Mapping[str, Boundary | None]
@@ -107,7 +111,7 @@ def static_problems(
         for key in ("artificial", "intact"):
             if own and key in own.model_fields_set:
                 yield f"static.boundary.{side}.{key}: is of no use in the static stage; give it to boundary.{side}"
-    begins = begins_stressed(static, boundaries)
+    begins = begins_stressed(static, boundaries, material)
     if static.k0 is not None:
         yield from _without_weight(loads)
     if begins and material and material.locked_in:

@@ -145,7 +145,7 @@ class ContactList(PairList):
 
         reference : with the geometry of the start, as under the elastic law.
         """
-        endless = {name: getattr(self.limits, name) + np.inf for name in ("tension", "cohesion")}
+        endless = {name: getattr(self.limits, name) + np.inf for name in self.ground.law.strengths}
         elastic = self.limits._replace(geometry=REFERENCE, **endless)
         limits = elastic if reference else self.limits
         u = self.spread(displacement)

@@ -5,30 +5,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.casefile.disks.material import Material
+from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.tables import Contacts
-from dembound.laws import Stiffness
-from dembound.laws.law import K
+from dembound.laws import Law, Stiffness
+from dembound.pairwise import P
 
 
 @dataclass(frozen=True, eq=False)
 class Dashpots:
-    """The dashpots of a part's contacts: normal and shear ratio, and the mass (m,) kg of its disks by slot."""
+    """The dashpots of a part's contacts: normal and shear ratio, mass (m,) kg of its disks by slot, and the law."""
 
     normal: float
     shear: float
     mass: np.ndarray
+    law: Law
 
     @classmethod
     def of(cls, material: Material, mass: np.ndarray) -> "Dashpots | None":
         """The dashpots of a material; None if it has none."""
-        return cls(material.dp_nratio, material.dp_sratio, mass) if material.has_dashpots else None
+        own = LAWS[material.law]
+        return cls(material.dp_nratio, material.dp_sratio, mass, own) if material.has_dashpots else None
 
     def at(self, contacts: Contacts) -> np.ndarray:
         """Viscosities (b, 2) N·s/m in all places of contacts, 0 where there is none."""
         one, other = self.mass[contacts.first], self.mass[contacts.second]
-        springs = contacts.constants[contacts.contact_type][:, [K.kn, K.ks]]
+        springs = self.law.dashpot_springs(contacts.constants)[contacts.contact_type]
         ratios = np.array([self.normal, self.shear])
         return np.ascontiguousarray(viscosity(ratios, springs, one[:, None], other[:, None]))
 
@@ -48,10 +51,13 @@ def brick_dashpots(ground: PackedMaterial, material: Material, pairing: tuple[in
     own = [ground.zones[zone].material for zone in pairing] if isinstance(ground, LayeredGround) else [ground, ground]
     radii = brick.radii[first], brick.radii[second]
     constants = ground.pair_constants(radii, brick.vectors, pairing, gaps_close=False)
+    springs = ground.law.dashpot_springs(constants)
+    if ground.overlaps is not None:
+        springs = np.column_stack([ground.stiffness.normal, ground.stiffness.shear])
     masses = own[0].mass[first], own[1].mass[second]
     normal, shear = (
-        viscosity(ratio, constants[:, k], *masses)
-        for ratio, k in ((material.dp_nratio, K.kn), (material.dp_sratio, K.ks))
+        viscosity(ratio, spring, *masses)
+        for ratio, spring in zip((material.dp_nratio, material.dp_sratio), springs.T, strict=True)
     )
-    arm = 0.5 * constants[:, K.rest] + constants[:, K.offset]
-    return Stiffness(normal, shear, np.zeros_like(normal), arm, constants[:, K.rest] - arm)
+    arm = 0.5 * constants[:, P.rest] + constants[:, P.offset]
+    return Stiffness(normal, shear, np.zeros_like(normal), arm, constants[:, P.rest] - arm)

@@ -105,7 +105,7 @@ def _with_sliding(ground: PackedMaterial, at_rest: StressAtRest) -> StressAtRest
     )
     under = [(material, stress) for material, layer in zones for stress in at_rest.ends(layer)[1]]
     if all(
-        within_friction(*each.law.stiffnesses(each.contact_constants), each.moduli.fric, pair_forces(each) @ stress)
+        within_friction(*each.stiffnesses(each.contact_constants), each.moduli.fric, pair_forces(each) @ stress)
         for each, stress in under
     ):
         return at_rest
@@ -125,6 +125,7 @@ def gradients_of_stresses(tensor: np.ndarray) -> np.ndarray:
 
 def pair_forces(ground: PackedMaterial) -> np.ndarray:
     """Normal, shear and bending springs' forces (3, b, 3) N and N·m of contacts per Pa of the stresses xx, yy, xy."""
+    ground = ground.at_rest
     network, continuum = Network.of_brick(ground.brick, ground.stiffness), ground.continuum
     strains = network.gradient_matrix() + network.motion_matrix() @ continuum.corrector.reshape(-1, 4)
     forces: np.ndarray = network.springs[:, None] * (strains @ gradients_of_stresses(continuum.tensor))
@@ -151,7 +152,7 @@ def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
     found = ground.sliding_forces(stress)
     if found is not None:
         return found
-    contacts, bonds = ground.law.stiffnesses(ground.contact_constants)
+    contacts, bonds = ground.stiffnesses(ground.contact_constants)
     forces = pair_forces(ground) @ stress
     return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
 
@@ -182,7 +183,7 @@ def stressed(
     ):
         own[:] = constants[pairing * types : (pairing + 1) * types]
         heights, between = base[number] + middle, ground.pairings[pairing]
-        contacts, bonds = ground.law.stiffnesses(own[: len(middle)])
+        contacts, bonds = ground.stiffnesses(own[: len(middle)])
         if at_rest.slides:
             every = np.arange(len(middle))
             forces = np.mean([rest_forces(zones[zone], at_rest, every, heights) for zone in between], axis=0)

@@ -84,7 +84,5 @@ def nominal_moduli(material: Material) -> Moduli:
     if speed is not None:
         emod, pb_emod = lattice_moduli(material.density, speed, material.contact_share, material.pb_rmul)
     else:
-        assert material.emod is not None
-        assert material.pb_emod is not None
-        emod, pb_emod = material.emod, material.pb_emod
+        return LAWS[material.law].moduli(material)
     return Moduli(emod, pb_emod, material.kratio, material.pb_kratio, material.pb_rmul, material.fric)

@@ -64,7 +64,9 @@ def limits_of(material: Material) -> Limits:
     strength = strength_of(material)
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)
-    return strength._replace(geometry={"updated": UPDATED, "reference": BONDED}[material.geometry])
+    geometry = {"updated": UPDATED, "reference": BONDED}[material.geometry]
+    found: Limits = LAWS[material.law].limits(strength._replace(geometry=geometry))
+    return found
 
 
 def limits_between(

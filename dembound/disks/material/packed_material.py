@@ -41,6 +41,8 @@ class PackedMaterial:
     given_speeds : speeds (m/s) of P and S waves that the case gives; None for those it does not give.
     mechanisms : of its damping; None without damping. Moduli, stiffness and wave speeds are then those at the frequency
     at which they are given, and springs are stiffer.
+    overlaps : (b,) m, of the brick's contacts under the stress at rest; None under a law whose springs do not depend on
+    it. is_secant : whether the stiffness is that from no force to the forces at rest, instead of that of small motion.
     """
 
     brick: Brick
@@ -50,6 +52,8 @@ class PackedMaterial:
     held: tuple[int, ...] = ()
     given_speeds: tuple[float | None, float | None] = (None, None)
     mechanisms: Attenuation | None = None
+    overlaps: np.ndarray | None = None
+    is_secant: bool = False
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _resting: dict[tuple[float, ...], np.ndarray | None] = field(
@@ -63,7 +67,28 @@ class PackedMaterial:
     def stiffness(self) -> Stiffness:
         """Constants of the brick's contacts."""
         first, second = self.brick.radii[self.brick.pairs].T
-        return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+        found = self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T), self.overlaps)
+        if not self.is_secant:
+            return found
+        normal, shear = self.law.secant
+        return replace(found, normal=normal * found.normal, shear=shear * found.shear)
+
+    @property
+    def has_stiffness(self) -> bool:
+        """Whether its contacts have a stiffness at rest: not without pressure, where it depends on that."""
+        return self.overlaps is None or bool(self.overlaps.any())
+
+    @cached_property
+    def at_rest(self) -> PackedMaterial:
+        """The linear material that has its forces at rest under the stress at rest."""
+        return self if self.overlaps is None else replace(self, is_secant=True)
+
+    def stiffnesses(self, constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffnesses (3, b) of the brick's contacts and bonds at rest, apart; constants : their rows, with zones."""
+        if self.overlaps is None:
+            return self.law.stiffnesses(constants)
+        found = self.at_rest.stiffness
+        return np.array([found.normal, found.shear, found.bending]), np.zeros((3, len(found.normal)))
 
     @cached_property
     def contact_constants(self) -> np.ndarray:
@@ -175,7 +200,9 @@ class PackedMaterial:
 
     @property
     def packed_pressure(self) -> float:
-        """Pressure (Pa) at which the brick was packed, for the present stiffness of its contacts."""
+        """Pressure (Pa) at which the brick was packed, for the present stiffness of its contacts, if they have one."""
+        if self.overlaps is not None:
+            return 0.0
         return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
 
     @cached_property
@@ -228,6 +255,8 @@ class PackedMaterial:
 
     def _continuum(self, held: tuple[int, ...]) -> HomogenisedMaterial:
         """The continuum with some components held, computed once."""
+        if held not in self._continua and not self.has_stiffness:
+            self._continua[held] = HomogenisedMaterial(np.zeros((4, 4)), np.zeros((3, len(self.brick.radii), 4)))
         if held not in self._continua:
             self._continua[held] = homogenise(self.brick, self.stiffness, held)
         return self._continua[held]
@@ -238,9 +267,9 @@ class PackedMaterial:
         way = tuple((stress / largest).round(DIGITS).tolist()) if largest > 0.0 else (0.0, 0.0, 0.0)
         if way not in self._resting:
             brick, held = self.brick, tuple(component for component in self.held if component == 2)
-            network, area = Network.of_brick(brick, self.stiffness), float(np.prod(brick.size))
+            network, area = Network.of_brick(brick, self.at_rest.stiffness), float(np.prod(brick.size))
             found = sliding_forces(
-                network, *self.law.stiffnesses(self.contact_constants), self.moduli.fric, np.array(way), held, area
+                network, *self.stiffnesses(self.contact_constants), self.moduli.fric, np.array(way), held, area
             )
             self._resting[way] = found
         kept = self._resting[way]

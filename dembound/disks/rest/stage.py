@@ -10,7 +10,8 @@ from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import DiskScene, column_alone
-from dembound.disks.stability import step_limit
+from dembound.disks.stability import largest_overlap, step_limit
+from dembound.disks.stepping.overlaps import Overlaps
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.kind import OnLook, Stages, StalledError
@@ -272,6 +273,8 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     loading = Loading(body, system, datum, step)
     rest = UntilAtRest(body, system, loading, stage.on_look, stage.name)
     simulation.track(rest)
+    if not scene.ground.law.starts_elastic:
+        simulation.track(Overlaps(largest_overlap(body.scene, step)))
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces

@@ -26,6 +26,8 @@ def never_elastic_again(case: DiskCase) -> str:
         return f'material.law = "{material.law}" is used from the start'
     if case.static is None:
         return "there is no static stage"
+    if not LAWS[material.law].starts_elastic:
+        return f'contacts under material.law = "{material.law}" are stiffer the more they overlap'
     if material.has_dashpots:
         return "contacts have dashpots"
     if not material.elastic_start:
@@ -106,7 +108,8 @@ def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.
     built_in = case.material.locked_in is not None or case.begins_stressed
     through = bool(disks.seams) and built_in and not settling
     slides = scene.at_rest is not None and scene.at_rest.slides
-    at_once = through or slides or not (settling or case.material.begins_elastic)
+    never = not scene.ground.law.starts_elastic
+    at_once = through or slides or never or not (settling or case.material.begins_elastic)
     return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
 
 

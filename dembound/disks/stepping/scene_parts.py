@@ -40,6 +40,11 @@ class Start:
     contacts: Mapping[str, ContactList] = field(default_factory=dict)
     has_history: bool = False
 
+    @property
+    def left_elastic_law(self) -> bool:
+        """Whether contacts opened or slid or bonds broke under a law that starts elastic."""
+        return self.has_history and all(pairs.ground.law.starts_elastic for pairs in self.contacts.values())
+
     def __post_init__(self) -> None:
         """Store displacements row after row, as in a record, so that sums over them have the same bits from there."""
         object.__setattr__(self, "displacement", np.ascontiguousarray(self.displacement))

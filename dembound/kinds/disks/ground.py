@@ -12,7 +12,7 @@ from dembound.damping import Mechanisms, Rayleigh
 from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
-from dembound.disks.stability import viscous_share
+from dembound.disks.stability import reserve, viscous_share
 from dembound.kinds.disks.micro_macro import Own, brick_quantities, materials_of
 from dembound.words import Entries, Quantity, in_one_unit, numbers, percent, sentences, with_unit
 
@@ -109,6 +109,9 @@ def _packing_facts(scene: DiskScene) -> Entries:
     if layers := describe_layers(scene):
         yield from _layer_facts(scene, layers)
         return
+    if not scene.ground.has_stiffness:
+        yield "wave speeds", "none: without pressure contacts have no stiffness; static.stress gives one"
+        return
     texts, unit = in_one_unit([numbers(found)[name] for name in STIFFNESS], "Pa")
     yield "homogenised stiffness", f"{', '.join(map(' '.join, zip(STIFFNESS, texts, strict=True)))} {unit}"
     yield "wave speeds", sentences(found, "p_wave_speed", "s_wave_speed") or "no motion is free"
@@ -171,11 +174,21 @@ def _law_facts(scene: DiskScene) -> Entries:
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.begins_elastic else ""
     yield "law", f"{material.law}{start}"
+    if scene.ground.overlaps is not None:
+        yield "overlap", _overlap_fact(scene.ground)
     if material.has_dashpots:
         ratios = f"{material.dp_nratio:g} normal, {material.dp_sratio:g} shear of the critical damping of two disks"
         yield "dashpots", f"{ratios}, at closed contacts; the step is {viscous_share(scene):.2f} times as long"
     for own in materials_of(scene):
         yield from _strength_facts(own)
+
+
+def _overlap_fact(ground: PackedMaterial) -> str:
+    """Overlaps at rest, and that up to which the step limit holds, where the stiffness grows with it."""
+    assert ground.overlaps is not None
+    texts, unit = in_one_unit([float(ground.overlaps.max(initial=0.0)), reserve(ground)], "m")
+    rest = f"up to {texts[0]} {unit} at rest; " if ground.has_stiffness else ""
+    return f"{rest}the step limit holds up to {texts[1]} {unit}, beyond which a run stops"
 
 
 def _strength_facts(own: Own) -> Entries:
@@ -191,7 +204,7 @@ def _strength_facts(own: Own) -> Entries:
         if material.pb_scatter is not None:
             bonds += f", each times a factor of its own, {material.pb_scatter.in_words}"
     yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
-    if ground.moduli.emod > 0.0:
+    if ground.moduli.emod > 0.0 and ground.law.starts_elastic:
         yield (
             f"tension{name}",
             f"in tension the stiffness falls to {100.0 * ground.bond_share:.0f} %, as contacts open and only "

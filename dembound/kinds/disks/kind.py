@@ -20,8 +20,9 @@ from dembound.disks.rest.stage import require_stages, settle, stage_names
 from dembound.disks.rotating_pressure import Membranes
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
-from dembound.disks.stability import choose_step
+from dembound.disks.stability import choose_step, largest_overlap
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
+from dembound.disks.stepping.overlaps import Overlaps
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
 from dembound.disks.watches import FarDisks, Turns
@@ -100,6 +101,8 @@ class Disks(Kind[DiskCase, DiskScene]):
         found: list[Tracker] = [Membranes(scene)] if follows(scene) else []
         if scene.has_history:
             found.append(FarDisks(scene, retires=case.run.far == "retire"))
+        if not scene.ground.law.starts_elastic:
+            found.append(Overlaps(largest_overlap(scene, run.time_step)))
         if limits_of(case.material).geometry != UPDATED:
             found.append(Turns())
         return [*found, LoadFactor(case, system)] if case.output.load_factor else found

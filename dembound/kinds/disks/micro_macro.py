@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks.material import Material
+from dembound.disks.material.confined import require_stiffness
 from dembound.disks.material.first_crack import FirstCrack, first_crack
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import DIRECTIONS, phase_speeds
@@ -67,8 +68,10 @@ LOADS = {"compression": -1.0, "tension": 1.0}
 def describe_materials(scene: DiskScene) -> list[dict[str, Any]]:
     """Micro-parameters and the body's properties, of each layer from the surface down: plain values, SI units.
 
-    Without layers there is one entry, of an empty name.
+    Without layers there is one entry, of an empty name. Raises CaseError for contacts without pressure that have no
+    stiffness without it.
     """
+    require_stiffness(scene.ground)
     return [{"layer": own.layer, **_describe(own)} for own in materials_of(scene)]
 
 

@@ -176,7 +176,7 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
         "stress": settled.stress.tolist(),
         "asked": asked,
         "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
-        "elastic": not settled.start.has_history,
+        "elastic": not settled.start.left_elastic_law,
         "cracks": len(settled.cracks),
         "column": None if settled.column is None else describe_static(settled.column, None),
         "before": None if settled.before is None else describe_static(settled.before, asked),

@@ -268,11 +268,12 @@ def _uneven_speed(scene: DiskScene, own: Own) -> Iterator[str]:
 def _unlikely_speed(scene: DiskScene, own: Own) -> Iterator[str]:
     """Moduli and density that are likely, but give waves of no solid."""
     material = own.material
-    if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
+    if material.p_wave_speed is not None or not own.ground.has_stiffness or any(unlikely_in("", material, scene.case)):
         return
     speed = own.ground.wave_speeds(0)[0]
     if found := MEANINGS["wave speed"].doubt(speed, "m/s", given=False):  # nan is not
-        keys = MODULI_KEYS if material.target is None else material.target.keys[:1]
+        named = tuple(key.name for key in own.ground.law.keys[:1]) or MODULI_KEYS
+        keys: tuple[str, ...] = named if material.target is None else material.target.keys[:1]
         are = f"{'is' if len(keys) == 1 else 'are'} {' and '.join(keys)}"
         yield f"{own.key(keys[0])}: makes P waves of a speed that {found}; {are} in Pa, density in kg/m³?"
 

@@ -227,7 +227,9 @@ def _entering_speeds(scene: DiskScene) -> dict[str, tuple[str, float]]:
 
 
 def _large_strains(scene: DiskScene) -> Iterator[str]:
-    """Waves, loads and strengths whose strains are far beyond those of solids."""
+    """Waves, loads and strengths whose strains are far beyond those of solids; none of ground without stiffness."""
+    if not scene.ground.has_stiffness:
+        return
     moduli = [float(np.diag(layer.material_tensor)[:2].min()) for layer in scene.ground.materials]
     reason, owns = _TOO_LARGE[scene.has_history], list(materials_of(scene))
     for name, (words, speed) in sorted(_entering_speeds(scene).items()):
