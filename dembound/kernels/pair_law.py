@@ -21,7 +21,7 @@ def acts(limits, constants, k):
 
 @generic
 def normal(limits, constants, k, overlap):
-    """Force (N) with which a contact of this overlap (m) pushes; below 0 for a gap."""
+    """Force (N) with which a contact of this overlap (m) pushes; at most 0 for a gap."""
 
 
 @generic

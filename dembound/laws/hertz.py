@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from dembound.laws.law import Key, Law, Limits, Moduli, Springs
-from dembound.pairwise import PLACE, Column, at_most, choose, index, is_pair_law, larger, limit_of, magnitude, root
+from dembound.pairwise import PLACE, Column, at_most, choose, index, is_pair_law, larger, limit_of, root
 
 COLUMNS = (
     *PLACE,
@@ -134,7 +134,7 @@ def acts(limits, constants, k):
 
 def normal(limits, constants, k, overlap):
     """N = h a^1.5, see pair_law.normal."""
-    return constants[k, K.normal] * (overlap * root(magnitude(overlap)))
+    return constants[k, K.normal] * (overlap * root(larger(overlap, 0.0)))
 
 
 def stored_between(limits, constants, k, before, now):
@@ -149,7 +149,7 @@ def shear_of(limits, constants, k, overlap, shear, slip):
 
 def slip_at(limits, constants, k, overlap, shear, force):
     """The slip s − S/k_s, see pair_law.slip_at."""
-    stiff = constants[k, K.shear] * root(larger(overlap, LEAST))
+    stiff = constants[k, K.shear] * root(larger(overlap, 0.0))
     return shear - force / larger(stiff, LEAST)
 
 
@@ -160,7 +160,7 @@ def slips_by_overlap(limits):
 
 def slip_after(limits, constants, k, before, now, shear, slip):
     """The slip with which the force stays while the overlap grows; it stays the same otherwise."""
-    kept = root(larger(before, 0.0) / larger(now, LEAST))
+    kept = root(larger(before, 0.0)) / larger(root(larger(now, 0.0)), LEAST)
     return choose(at_most(now, larger(before, 0.0)), slip, shear - (shear - slip) * kept)
 
 

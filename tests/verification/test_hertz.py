@@ -9,6 +9,9 @@ from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build, ground_of
 from dembound.disks.small_motion import small_motion
 from dembound.disks.stability import RESERVE, reserve, step_limit
+from dembound.errors import CaseError, RunError
+from dembound.motion.simulation import Simulation
+from dembound.running import plan
 
 G, NU, RADIUS, MASS = 1e9, 0.25, 0.25, 625.0
 GRAINS = {"law": "hertz", "hz_shear": G, "hz_poiss": NU, "fric": 0.5}
@@ -131,12 +134,9 @@ def test_the_step_limit_and_factors_of_sides_follow_the_tangent():
 
 @pytest.mark.parametrize("pattern", ["A", "B"])
 def test_pressed_ground_is_at_rest_from_the_start(pattern):
-    packing = (
-        {"pattern": "A", "size": [2.0, 2.0]}
-        if pattern == "A"
-        else {"pattern": "B", "size": [4.0, 4.0], "brick": [4.0, 4.0], "seed": 1, "radius_ratio": 1.5}
-    )
-    case = small(GROUND | {"packing": packing | {"radius": RADIUS}, "boundary": {}})
+    random = {"brick": [4.0, 4.0], "seed": 1, "radius_ratio": 1.5} if pattern == "B" else {}
+    packing = {"pattern": pattern, "size": [4.0, 4.0], "radius": RADIUS} | random
+    case = small(GROUND | {"packing": packing, "boundary": {}})
     settled = settle(build(case))
 
     # forces of the packing at the overlaps found, to their tolerance
@@ -144,3 +144,38 @@ def test_pressed_ground_is_at_rest_from_the_start(pattern):
     assert settled.ratio < 1e-9
     if pattern == "A":  # in random packings the mean of a few disks differs
         assert settled.stress == pytest.approx([-1e6, -1e6, 0.0], rel=1e-9, abs=1.0)
+
+
+def test_a_run_stops_before_its_contacts_are_too_stiff_for_the_step():
+    load = {"name": "weight", "acceleration": [0.0, -9.81]}
+    tables = {key: value for key, value in GROUND.items() if key != "static"} | {
+        "boundary": {"bottom": {"type": "fixed"}}
+    }
+    planned = plan(small(tables, changes={"load": [load], "material.hz_shear": 1e6}))
+    simulation = Simulation(planned.scene, planned.time_step)
+    for each in planned.kind.trackers(simulation):
+        simulation.track(each)
+
+    assert np.isnan(planned.scene.ground.wave_speeds(0)).all()  # without pressure no wave runs
+    with pytest.raises(RunError, match=r"too stiff for the time step.*give run.time_step = "):
+        simulation.run(2000)
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"static": {"stress": [0.0, 0.0, 0.0]}}, "boundary.left: needs wave speeds"),
+        ({"static.k0": 0.5}, "static.k0: material.law"),
+        ({"boundary.left": {"type": "outside"}}, 'boundary.left.type: is "outside"'),
+        ({"layer": [{"thickness": 0.5}, {}]}, "layer: material.law"),
+    ],
+)
+def test_what_needs_a_stiffness_without_pressure_is_refused(changes, line):
+    with pytest.raises(CaseError) as caught:
+        small(GROUND, changes=changes)
+    assert any(each.startswith(line) for each in caught.value.problems)
+
+
+def test_a_stress_that_pulls_contacts_apart_is_refused():
+    with pytest.raises(CaseError, match=r"static\.stress: is"):
+        ground_of(small(GROUND, changes={"static.stress": [1e6, -1e6, 0.0]}))

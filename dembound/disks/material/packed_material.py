@@ -6,6 +6,7 @@ linear solve and gives wave speeds without a dynamic run.
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -89,6 +90,14 @@ class PackedMaterial:
             return self.law.stiffnesses(constants)
         found = self.at_rest.stiffness
         return np.array([found.normal, found.shear, found.bending]), np.zeros((3, len(found.normal)))
+
+    def content(self, *more: object) -> bytes:
+        """A digest of brick and moduli, and of more values with a text, by which what follows from them is kept."""
+        brick = self.brick
+        digest = hashlib.sha256(repr((self.moduli, self.law.name, self.held, *more)).encode())
+        for array in (brick.size, brick.positions, brick.radii, brick.pairs, brick.images):
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.digest()
 
     @cached_property
     def contact_constants(self) -> np.ndarray:

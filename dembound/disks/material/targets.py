@@ -7,7 +7,6 @@ dC/d ln κ = −eᵀk_s e/A, where e are the shear elongations of the contacts p
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import replace
 
 import numpy as np
@@ -52,7 +51,7 @@ def with_target(ground: PackedMaterial, target: Target, place: str) -> PackedMat
                 f"motion.held holds {' and '.join(held)}; leave that out, or give p_wave_speed alone"
             ]
         )
-    content = _content(ground, target)
+    content = ground.content(target)
     if content in _FOUND:
         kratio, factor = _FOUND[content]
         return _with(ground, kratio, factor)
@@ -131,15 +130,6 @@ def _with(ground: PackedMaterial, kratio: float, factor: float = 1.0) -> PackedM
     """The material with another kratio = pb_kratio and with both moduli times a factor."""
     emod, pb_emod = factor * ground.moduli.emod, factor * ground.moduli.pb_emod
     return replace(ground, moduli=replace(ground.moduli, emod=emod, pb_emod=pb_emod, kratio=kratio, pb_kratio=kratio))
-
-
-def _content(ground: PackedMaterial, target: Target) -> bytes:
-    """A digest of all that the search depends on."""
-    brick = ground.brick
-    digest = hashlib.sha256(repr((ground.moduli, ground.law.name, ground.held, target)).encode())
-    for array in (brick.size, brick.positions, brick.radii, brick.pairs, brick.images):
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.digest()
 
 
 def _out_of_reach(ground: PackedMaterial, target: Target, place: str) -> str:

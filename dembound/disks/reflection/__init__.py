@@ -11,6 +11,7 @@ import numpy as np
 from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.description import reflected
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import linear_law
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reflection.arrivals import Arrival, arrivals_of, wide_frequencies, words_of
 from dembound.disks.reflection.bricks import BrickInRow, end_of, end_scene
@@ -18,7 +19,6 @@ from dembound.disks.reflection.continuum_end import ContinuumEnd, beside_element
 from dembound.disks.reflection.meter import End, Meter, Reflections
 from dembound.disks.reflection.smeared import by_smeared_supports
 from dembound.disks.scene import DiskScene, build, ground_of, with_boundaries
-from dembound.disks.small_motion import small_motion
 from dembound.disks.stability import choose_step
 from dembound.disks.surroundings.frequencies import frequencies_of
 from dembound.errors import CaseError
@@ -100,7 +100,7 @@ def measure_side(
         problems += [f"--frequency: is {f:g}, must be above 0 (Hz)" for f in frequencies if not 0.0 < f < np.inf]
     if problems:
         raise CaseError(problems)
-    case = small_motion(case)
+    linear_law(case.material.law)
     given, case = case, _in_layer(case, side, layer)
     whole = build(case)
     ground, table = whole.ground, case.side(side)
@@ -157,12 +157,12 @@ def compare_types(
     angles, frequencies, report, layer : as of `measure_side`; by default frequencies of the whole spectrum. Raises
     CaseError for tables that the side cannot have, and for a law of no linear medium.
     """
-    case = small_motion(case)
     given, case = case, _in_layer(case, side, layer)
     ground, found = ground_of(case), {}
     chosen = np.sort(frequencies) if len(frequencies) else wide_frequencies(case, ground)
     for table in tables:
         changed = with_changes(case, {f"boundary.{side}": dict(table)})
+        linear_law(changed.material.law)
         whole = build(changed)
         step = choose_step(whole)[0]
         if changed.side(side).is_outside:

@@ -19,6 +19,7 @@ import numpy as np
 
 from dembound.boundaries import Boundary, Periodic, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.modes import Body, Condensed
@@ -189,6 +190,6 @@ def end_scene(case: DiskCase, side: str, bricks: int = LAST) -> DiskScene:
     ends[side] = case.side(side).stiffest(side, case.box).at_rest().on_whole_side()
     packing = case.packing.with_copies(*copies)
     case = case.uniform_at(case.box[3 if side == "top" else 1])  # beside layers the lowest
-    return build(
-        replace(case, packing=packing, boundary=ends, hole=(), load=(), monitor=(), wave={}, static=None, incident=None)
-    )
+    static = None if LAWS[case.material.law].starts_elastic else case.static  # which gives contacts their stiffness
+    alone = replace(case, packing=packing, boundary=ends, static=static, incident=None)
+    return build(replace(alone, hole=(), load=(), monitor=(), wave={}))

@@ -1,6 +1,7 @@
 """Registered types of another package work everywhere."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -15,7 +16,7 @@ from dembound.formulas.disks.walls import BETWEEN, CREEP, DARK, LIT, LONGEST, OF
 
 HERE = Path(__file__).parent
 REGISTERED = {
-    "laws": ["Linear", "Namesake", "Brittle", "Rubber", "Forgetful", "Graded"],
+    "laws": ["Linear", "Namesake", "Brittle", "Tips", "Rubber", "Forgetful", "Graded"],
     "methods": ["Cone"],
     "boundaries": ["OtherInput", "LateInput", "Mattress", "Quilt", "Heather", "Shock", "Pads"],
     "packings": ["Hexagonal", "Unsaid", "Drawn"],
@@ -76,6 +77,18 @@ def test_a_law_without_moments_closes_its_books(found) -> None:
     assert found["linear"]["law"] == [["linear", 0]]
     assert found["linear"]["bending"] == 0.0 < found["linear"]["rotation"]
     assert found["linear"]["error"] < 1e-12
+
+
+def test_a_law_with_kernel_functions_of_its_own_bounces_as_it_says(found) -> None:
+    """Two disks at ±v touch for √π Γ(⁴⁄₃)/Γ(⅚) a/v, with the largest overlap a: ⅓qa³ = ½(m/2)(2v)²."""
+    steps, step, speeds, law = found["tips"]
+    speed, mass, tip = 1e-3, 625.0, 1e9
+    deepest = (3.0 * mass * speed**2 / tip) ** (1.0 / 3.0)
+    lasts = math.sqrt(math.pi) * math.gamma(4.0 / 3.0) / math.gamma(5.0 / 6.0) * deepest / speed
+
+    assert law == [["tips", 0]]
+    assert steps * step == pytest.approx(lasts, abs=1.5 * step)  # the first and the last step are cut
+    assert speeds == pytest.approx([-speed, speed], rel=1e-4)  # steps of 1/400 of the impact
 
 
 def test_a_method_with_another_micromodulus_disperses_as_its_bonds_do(found) -> None:

@@ -6,6 +6,7 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
+import tomli_w
 
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
@@ -116,6 +117,23 @@ def halved(made) -> dict[str, list]:
     }
 
 
+def bounced(made) -> list:
+    """Steps in which two disks touch, the length of a step, their speeds after it, and the laws in use."""
+    planned = plan(made)
+    run = Simulation(planned.scene, 1e-4)
+    run.state.velocity = np.array([[1e-3, -1e-3], [0.0, 0.0], [0.0, 0.0]])
+    ledger = Ledger(run, 1)
+    run.track(ledger)
+    run.run(3000)
+    touching = sum(entry.contact > 0.0 for entry in ledger.entries)
+    return [touching, 1e-4, run.state.velocity[0].tolist(), run.state.laws]
+
+
+TWO = {
+    "packing": {"pattern": "A", "size": [1.0, 0.5], "radius": 0.25},
+    "material": {"density": 2500.0, "law": "tips", "tip": 1e9},
+    "run": {"duration": 0.03},
+}
 shaft = {"type": "diamond", "name": "shaft", "centre": [12.0, 2.5], "half": 1.2}
 periodic = {"type": "periodic"}
 strip = {"boundary.bottom": periodic, "boundary.top": periodic, "packing.size": [20.0, 2.0], "motion.held": ["x"]}
@@ -131,6 +149,7 @@ json.dump(
     {
         "types": [table.__name__ for table in BOUNDARIES],
         "warnings": [str(each.message) for each in said],
+        "tips": bounced(case(tomli_w.dumps(TWO))),
         "linear": stepped(case(GROUND, hole=[shaft])),
         "hexagonal": stepped(case(GROUND, **hexagons, **wide)),
         "not whole": refusal(GROUND, **hexagons),

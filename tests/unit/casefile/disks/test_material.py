@@ -43,6 +43,16 @@ BONDED = {"law": "linearpbond", **STIFFNESS}
             BONDED | {"pb_scatter": {"type": "weibull", "shape": 5.0}},
             ["pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh"],
         ),
+        (STIFFNESS | {"hz_shear": 1e9}, ['hz_shear: is only allowed with law = "hertz"']),
+        ({"law": "hertz", "hz_shear": 1e9}, ['hz_poiss: is missing; law = "hertz" needs hz_shear and hz_poiss']),
+        (
+            {"law": "hertz", "hz_shear": 1e9, "hz_poiss": 0.2, "emod": 1e9, "pb_ten": 1e6, "dp_sratio": 0.1},
+            [
+                'emod: is not allowed with law = "hertz", whose stiffness follows from hz_shear and hz_poiss',
+                'pb_ten: is not allowed with law = "hertz", which does not use it',
+                "dp_sratio: is of the shear of contacts, but fric = 0 leaves them none",
+            ],
+        ),
         (BONDED | {"pb_fa": 30.0}, ["pb_fa: is only allowed together with pb_coh"]),
     ],
 )
