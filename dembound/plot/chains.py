@@ -10,10 +10,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks
+from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks, frame
 from dembound.plot.field import Disks, read_disks
 from dembound.plot.scene import DRAWING, LONG, part_around
-from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, finished, new_figure, styled
 from dembound.results.reader import open_record, snapshot_of, snapshots_of
 
 COLUMN = "contacts/normal_force"
@@ -88,17 +88,14 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
     width, height = scale * window.size
     figure = new_figure(max(width, NARROWEST) + 1.2, height + 1.8)
     panel = figure.subplots()
-    panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
-    panel.grid(False)
+    frame(panel, window)
     if 2.0 * float(disks.radii.mean()) * scale * figure.dpi >= SMALLEST_PIXELS:
         shown = window.touches(chains.positions, disks.radii)
         draw_disks(panel, chains.positions[shown], disks.radii[shown], facecolors=SHADE, linewidths=0.0)
     drawn = _draw_lines(panel, window, chains, max(LEAST_WIDTH, 72.0 * scale * WIDEST * 2.0 * disks.radii.mean()))
     if disks.seam is not None and window.extent[0] < disks.seam < window.extent[1]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
-    figure.suptitle(f"{disks.case}: normal forces of {drawn}, t = {chains.time:.3g} s", fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    return finished(figure, f"{disks.case}: normal forces of {drawn}, t = {chains.time:.3g} s", [panel], 3)
 
 
 def read_chains(file: h5py.File, snapshot: int | None) -> Chains:

@@ -63,6 +63,12 @@ class Window:
         return np.hypot(*(positions - nearest).T) < radii * (1.0 - 1e-9)  # touching disks, to rounding, are outside
 
 
+def frame(panel: Axes, window: Window) -> None:
+    """Show a window of the axes, in true proportions."""
+    panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
+    panel.grid(False)
+
+
 def draw_disks(axes: Axes, positions: np.ndarray, radii: np.ndarray, **looks: Any) -> EllipseCollection:
     """Add disks to the axes in true size; positions (n, 2) and radii (n,) in m; looks : arguments for matplotlib."""
     disks = EllipseCollection(

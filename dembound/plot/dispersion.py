@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 from dembound.exact.dispersion import Lattice
-from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, point_style, styled
+from dembound.plot.style import REFERENCE, finished, line_style, new_figure, point_style, styled
 
 CELLS = np.geomspace(2.0, 100.0, 800)
 """Range of spacings per wavelength, up to where wide horizons are exact to a few per cent."""
@@ -54,9 +54,7 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
         panel.axhline(1.0, color=REFERENCE, linewidth=1.0, zorder=1)
         _cells_axis(panel)
         panel.set_ylabel(quantity)
-    figure.suptitle("Dispersion of a bar of nodes; a horizon of 1 spacing is central differences", fontsize=11)
-    outside_legend(figure, [left], columns=3)
-    return figure
+    return finished(figure, "Dispersion of a bar of nodes; a horizon of 1 spacing is central differences", [left], 3)
 
 
 def line_widths(lattices: Sequence[Lattice]) -> list[float]:

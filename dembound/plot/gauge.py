@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from dembound.gauge.estimates import near_free_end
 from dembound.gauge.gauge_io import Gauge
 from dembound.gauge.spalling import Findings, Strength
-from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, finished, line_style, new_figure, styled
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -41,9 +41,7 @@ def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
     _history(panels[0], gauge, findings)
     if findings.strength:
         _free_end(panels[1], gauge, findings.speed.value, findings.strength)
-    figure.suptitle(f"Gauge at {gauge.position:g} m of a bar of {gauge.length:g} m", fontsize=11)
-    outside_legend(figure, panels, columns=3)
-    return figure
+    return finished(figure, f"Gauge at {gauge.position:g} m of a bar of {gauge.length:g} m", panels, 3)
 
 
 def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:

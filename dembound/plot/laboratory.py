@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from dembound.plot.field import Field, read_disks
 from dembound.plot.scene import draw_panel
-from dembound.plot.style import COLOURS, Powers, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, Powers, finished, new_figure, styled
 from dembound.results.reader import cracks_until, open_record, snapshots_of
 from dembound.results.recording import LoadingCurve, TestName
 
@@ -74,9 +74,7 @@ def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
     broken.grid(False)
     panel.set_ylim(bottom=0.0)
     panel.set_xlim(left=0.0)
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    return finished(figure, title, [panel], 3)
 
 
 @styled
@@ -114,9 +112,7 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         if number:
             panel.set_ylabel("")
     figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
-    figure.suptitle(f"{disks.case}, {len(disks.radii):,} disks", fontsize=11)
-    outside_legend(figure, panels, columns=2)
-    return figure
+    return finished(figure, f"{disks.case}, {len(disks.radii):,} disks", panels, 2)
 
 
 @styled
@@ -153,9 +149,7 @@ def plot_envelope(title: str, tests: Sequence[tuple[float, float]], angle: float
     circles.set(xlabel="normal stress, compression positive (MPa)", ylabel="shear stress (MPa)", aspect="equal")
     circles.set_xlim(0.0, 1.05 * strength.max())
     circles.set_ylim(0.0, 1.1 * max(0.5 * strength.max(), line.max()))
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [over, circles], columns=2)
-    return figure
+    return finished(figure, title, [over, circles], 2)
 
 
 def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> None:

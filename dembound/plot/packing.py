@@ -8,8 +8,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from dembound.plot.disks import Window, draw_disks
-from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
+from dembound.plot.disks import Window, draw_disks, frame
+from dembound.plot.style import COLOURS, finished, new_figure, styled
 
 BLUE, RED, GREEN, YELLOW = (COLOURS[index] for index in (0, 1, 2, 5))
 
@@ -60,10 +60,8 @@ def plot_brick(
         ends = np.concatenate([ends, ends[across] - (images[across] * size)[:, None, :]])
         panel.add_collection(LineCollection(list(ends), colors="black", linewidths=0.6, label="contact"), autolim=False)
         title += f", contacts: {len(pairs)}"
-    _frame(panel, window)
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    frame(panel, window)
+    return finished(figure, title, [panel], 3)
 
 
 def brick_disks(
@@ -113,11 +111,9 @@ def plot_patterns(parts: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
             (near & exposed, BLUE, "boundary particles"),
         ):
             _draw_kind(panel, positions[chosen], radii[chosen], colour, label)
-        _frame(panel, window)
+        frame(panel, window)
         panel.set_title(f"{name}: {len(edge)} boundary particles")
-    figure.suptitle("Packings at the boundary", fontsize=11)
-    outside_legend(figure, panels, columns=2)
-    return figure
+    return finished(figure, "Packings at the boundary", panels, 2)
 
 
 def _edge_window(positions: np.ndarray, radii: np.ndarray, edge: np.ndarray, span: float) -> Window:
@@ -136,9 +132,3 @@ def _draw_kind(panel: Axes, positions: np.ndarray, radii: np.ndarray, colour: st
     """Disks of one kind, with an entry in the legend."""
     draw_disks(panel, positions, radii, facecolors=colour, edgecolors="white", linewidths=0.3)
     panel.scatter([], [], s=50, color=colour, label=label)
-
-
-def _frame(panel: Axes, window: Window) -> None:
-    """Show a window of the axes, in true proportions."""
-    panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
-    panel.grid(False)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from dembound.plot.style import COLOURS, DASHES, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, DASHES, finished, line_style, new_figure, styled
 
 LEAST = 1e-6
 """Smallest share of energy drawn: 0.1 % of the amplitude."""
@@ -56,9 +56,7 @@ def plot_reflection(angles: np.ndarray, frequencies: np.ndarray, waves: Sequence
         upper.set_title(f"incident {each.name} waves")
     for panel in panels[:, 0]:
         panel.set_ylabel("energy sent back / incident (–)")
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, list(panels.ravel()), columns=3)
-    return figure
+    return finished(figure, title, list(panels.ravel()), 3)
 
 
 @styled
@@ -101,9 +99,7 @@ def plot_types(
             panel.set_zorder(behind.get_zorder() + 1)
             panel.patch.set_visible(False)
     panels[0].set_ylabel("energy sent back / incident (–)")
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, list(panels), columns=2)
-    return figure
+    return finished(figure, title, list(panels), 2)
 
 
 def _against_angle(panel: Axes, angles: np.ndarray, each: Curves) -> None:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from dembound.errors import CaseError
-from dembound.plot.style import COLOURS, REFERENCE, decade, new_figure, open_point_style, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, decade, finished, new_figure, open_point_style, styled
 from dembound.results.reader import open_record, record_names, text_of
 
 
@@ -51,9 +51,7 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
     lower.set_ylabel("boundary factor β (–)")
     lower.set_xlabel("pass")
     lower.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-    figure.suptitle("Calibration: β is right when the side moves as the incident wave does", fontsize=11)
-    outside_legend(figure, [upper], columns=2)
-    return figure
+    return finished(figure, "Calibration: β is right when the side moves as the incident wave does", [upper], 2)
 
 
 def read_passes(path: Path) -> Passes:
@@ -112,6 +110,4 @@ def plot_stability(short: Sequence[Line], long: Sequence[Line], title: str) -> F
     right.set_title("at the case's own step")
     low, high = right.get_ylim()
     right.set_ylim(min(low, 0.1), max(high, 10.0))
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [left, right], columns=2)
-    return figure
+    return finished(figure, title, [left, right], 2)

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter, FixedLocator
 
-from dembound.plot.style import COLOURS, REFERENCE, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, finished, new_figure, styled
 from dembound.results.reader import open_record, text_of
 from dembound.results.structure import Members
 
@@ -71,9 +71,7 @@ def plot_sweep(path: Path) -> Figure:
             panel.set_xlim(-0.7, len(places) - 0.3)
     for panel in axes[count:]:
         panel.set_axis_off()
-    figure.suptitle(content.title, fontsize=11, parse_math=False)
-    outside_legend(figure, axes, columns=3)
-    return figure
+    return finished(figure, content.title, axes, 3)
 
 
 def read_content(path: Path) -> Content:
