@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within
+from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within, print_estimate
 from dembound.cli.app import (
     MORE,
     Cases,
@@ -27,7 +27,6 @@ from dembound.cli.app import (
     prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.estimate import print_estimate
 from dembound.errors import CaseError
 from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN

@@ -279,7 +279,7 @@ def _lines(motions: Sequence[Motion]) -> Iterator[str]:
 
 def _table(channels: Sequence[Channel], motions: Sequence[Motion], options: ProcessingOptions) -> Table:
     """The measures of all components, a row each."""
-    from dembound.records.measures import measures_of, usable_band
+    from dembound.records.processing import measures_of, usable_band
     from dembound.waves.unit_names import STANDARD_GRAVITY
 
     table = compact_table(show_edge=False)

@@ -30,7 +30,7 @@ OF_THE_RUN = ("peak", "layer")
 """The fields that do not change with time."""
 
 FORCES = "forces"
-"""Name of the picture of contacts, see plot/chains.py."""
+"""Name of the picture of contacts, see plot/packing.py."""
 
 MEGA = 1e6
 """Pascals in a megapascal."""

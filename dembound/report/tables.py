@@ -1,18 +1,22 @@
-"""The tables of a page: runs, changed keys, monitors, sides, energies, times, versions and estimated errors."""
+"""The runs of a page, and its tables: changed keys, monitors, sides, energies, times, versions, estimated errors."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from dembound.boundaries.description import FACTORS
+from dembound.errors import CaseError, RecordError
+from dembound.kinds import kind_of_record
+from dembound.motion.kind import Kind
 from dembound.plot.continuum import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
-from dembound.report.runs import ReportedRun
 from dembound.results.histories import KEY, entries
-from dembound.results.reader import laws_in_words, open_record
-from dembound.results.summary import end_in_words
+from dembound.results.reader import laws_in_words, open_record, record_names, understood
+from dembound.results.results import Results
+from dembound.results.summary import end_in_words, read_summary
 from dembound.words import Entries, percent
 
 NONE = "–"
@@ -245,3 +249,68 @@ def _estimated(run: ReportedRun) -> Entries:
 
 def _or_none(table: Table) -> Table | None:
     return table if table.rows else None
+
+
+@dataclass(frozen=True)
+class ReportedRun:
+    """A run: its record, a unique name, its kind, its results, and its summary.
+
+    The summary is empty for a run that is not complete.
+    """
+
+    record: Path
+    name: str
+    kind: Kind[Any, Any]
+    results: Results
+    summary: Mapping[str, Any]
+
+    @property
+    def has_histories_alone(self) -> bool:
+        """Whether the record has only histories of monitors, exact or superposed from a library, and no body."""
+        return len(self.results.particles) == 0
+
+    @property
+    def is_bar(self) -> bool:
+        """Whether the record is that of a bar."""
+        return self.kind.name == "bar"
+
+
+def read_runs(records: Sequence[Path]) -> list[ReportedRun]:
+    """The runs of a page.
+
+    Raises CaseError or RecordError, with one line for each record that cannot be read, is not that of a run, or is of
+    another kind than the first.
+    """
+    found: list[tuple[Path, Kind[Any, Any], Results, Mapping[str, Any]]] = []
+    errors: list[CaseError] = []
+    for record in records:
+        try:
+            found.append((record, *_read(record)))
+        except CaseError as error:
+            errors.append(error)
+    if errors:
+        failure = RecordError if all(isinstance(error, RecordError) for error in errors) else CaseError
+        raise failure([line for error in errors for line in str(error).splitlines()])
+    kinds = sorted({kind.plural for _, kind, _, _ in found})
+    if len(kinds) > 1:
+        raise CaseError(
+            [f"RESULTS: holds runs of {' and of '.join(kinds)}, which have no page in common; name one kind"]
+        )
+    names = record_names(records)
+    return [
+        ReportedRun(record, name, kind, results, summary)
+        for name, (record, kind, results, summary) in zip(names, found, strict=True)
+    ]
+
+
+def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
+    """Kind, results and summary of a record."""
+    if record.name == "calibration.h5":
+        raise CaseError([f"{record}: is of a calibration; pages and movies are of runs"])
+    kind, results = kind_of_record(record), Results(record)
+    if record.name != "run.h5" or not (record.parent / "summary.json").is_file():
+        return kind, results, {}
+    summary = read_summary(record.parent)
+    with understood(record):
+        _ = summary["version"]  # which every summary has
+        return kind, results, dict(summary)

@@ -21,8 +21,7 @@ from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT
 from dembound.results.reader import open_record
 from dembound.running.planning import plan, warnings_before
 from dembound.studies.library.build import under
-from dembound.studies.library.library import Library
-from dembound.studies.library.record import Record
+from dembound.studies.library.library import Library, Record
 
 
 class WatchedContact(NamedTuple):

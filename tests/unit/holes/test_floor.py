@@ -3,7 +3,7 @@
 import pytest
 
 from dembound.holes import Circle, Polygon, Rectangle
-from dembound.holes.floor import floor_beside
+from dembound.holes.hole import floor_beside
 
 BOX = (10.0, 0.0, 70.0, 30.0)
 

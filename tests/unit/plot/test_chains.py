@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import to_hex
 
-from dembound.plot.chains import PULL, PUSH, plot_chains
+from dembound.plot.packing import PULL, PUSH, plot_chains
 
 
 def of_type(figure, kind):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.records.channel import Channel
-from dembound.records.measures import measures_of, usable_band
-from dembound.records.processing import Processing, processed
+from dembound.records.processing import Processing, measures_of, processed, usable_band
 from dembound.waves.unit_names import STANDARD_GRAVITY
 
 STEP = 0.01

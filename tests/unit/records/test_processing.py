@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.gauge.filters import Filters
+from dembound.gauge.baseline import Filters
 from dembound.records.channel import Channel
 from dembound.records.processing import Processing, differentiated, processed
 

@@ -12,8 +12,7 @@ from dembound import table
 from dembound.errors import CaseError
 from dembound.records.channel import Record
 from dembound.records.formats import TYPES, Reading, read_record
-from dembound.records.formats.format import Format
-from dembound.records.formats.source import Source
+from dembound.records.formats.source import Format, Source
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 G = 9.80665

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.studies.library import RecordTimes, read_records
-from dembound.studies.library.record import on_spacing
+from dembound.studies.library.library import on_spacing
 from dembound.waves import FileWave
 
 CLOCK = RecordTimes(spacing=0.1, duration=1.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.sweep import plot_sweep
+from dembound.plot.stability import plot_sweep
 from dembound.studies.sweep.members import ENERGY, Member
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.tables import Swept, statistic, write_tables
