@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from dembound.cli.app import MORE, Cases, Settings, Threads, app, load_case, prepare_computing, text_for
-from dembound.cli.console import err, out
+from dembound.cli.console import err, out, print_lines
 from dembound.cli.results import results_file
 from dembound.errors import CaseError, DemboundError, NotAccurateError, RecordError
 from dembound.words import percent, with_unit
@@ -113,9 +113,9 @@ def advise_cases(
         case = load_case(path, changes)
         with watched(case.name, partial(Table, bounds)) as table:
             found = advise(case, bounds, of, kept, seeds, longest, table)
-        _print(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
+        print_lines(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
         if bound is None:
-            _print(f"write one: dembound advise {path} --error 3%")
+            print_lines(f"write one: dembound advise {path} --error 3%")
         elif not found.best[bound].holds(bound):
             missed.append(_missed(case, found, bound))
         elif found.best[bound].choice.changes:
@@ -164,8 +164,8 @@ def chosen(
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
-    for line in [*_lines(best), *(best.choice.toml or ["the case as it is"])]:
-        out.print(f"{case.name}: {line}", markup=False, soft_wrap=True)
+    said = [_line(best), *(best.choice.toml or ["the case as it is"])]
+    print_lines(*(f"{case.name}: {line}" for line in said))
     return best.case
 
 
@@ -174,27 +174,22 @@ def _kept(keep: Sequence[str] | None, changes: Sequence[str] | None) -> list[str
     return [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
 
 
-def _print(line: str) -> None:
-    """Print a line."""
-    out.print(line, markup=False, soft_wrap=True)
-
-
-def _lines(best: Proposal) -> list[str]:
+def _line(best: Proposal) -> str:
     """The choice in words, with its error and cost."""
     from dembound.results.histories import split_in_words
 
     worst = best.budget.worst()
-    return [
+    return (
         f"{best.choice.name}; predicted error {worst.share.expected}, at most {worst.share.most} "
         f"({split_in_words(worst.by)}), steps take about {with_unit(best.cost, 's', 2)}"
-    ]
+    )
 
 
 def _missed(case: Case, found: Advice, bound: float) -> str:
     """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
     worst = best.budget.worst()
-    said = [f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"]
+    said = [f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_line(best)}"]
     unknown = [cause for cause in best.budget.causes.unknown if cause.counts(best.budget.of)]
     if worst.share.at_least:  # no choice with this cause would do
         said += [f"not estimated, so that no bound is kept: {each.name}, {each.words}" for each in unknown]
@@ -222,9 +217,7 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
         raise RuntimeError(f"{target}: the text is not that of the choice")
     plan(again)
     write_text(target, text)
-    for line in choice.toml:
-        out.print(f"  {line}", markup=False, soft_wrap=True)
-    out.print(f"wrote {target}", markup=False, soft_wrap=True)
+    print_lines(*(f"  {line}" for line in choice.toml), f"wrote {target}")
 
 
 Repeat = Annotated[
@@ -285,9 +278,8 @@ def _show(folder: Path, found: Budget) -> None:
     from dembound.plot.style import save
     from dembound.running.recorded import file_of_record
 
-    out.print(f"{folder.name}: errors, estimated in {found.cpu_seconds:.2g} s of CPU time", markup=False)
-    for line in [*lines_of(found), next_step(found, folder, file_of_record(folder / "run.h5"))]:
-        out.print(line, markup=False, soft_wrap=True)
+    out.print(f"{folder.name}: errors, estimated in {found.cpu_seconds:.2g} s of CPU time")
+    print_lines(*lines_of(found), next_step(found, folder, file_of_record(folder / "run.h5")))
     picture = folder / "histories.png"
     if picture.is_file():
         save(plot_histories([folder / "run.h5"]), picture)

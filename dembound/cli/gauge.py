@@ -1,12 +1,10 @@
-"""The commands gauge and hopkinson, and their options for measured signals.
-
-Signals have columns, units, bridges of strain gauges, a baseline and filters.
-"""
+"""The commands gauge and hopkinson."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,125 +15,65 @@ from dembound.cli.app import MORE, PICTURE, PictureTitle, app, writable
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.options import leave, with_tables
 from dembound.cli.results import results_file
+from dembound.cli.signal_options import SignalOptions, of_file
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
-    from dembound.gauge.baseline import Treatment
     from dembound.gauge.estimates import Estimate
+    from dembound.gauge.gauge_io import Gauge
     from dembound.gauge.hopkinson import Setup, Specimen
-    from dembound.gauge.reading.signal import Reading
-    from dembound.gauge.reading.units import Bridge
     from dembound.gauge.spalling import Findings
 
 
-FILE, BRIDGE, CLEANING = "Text files", "Strain gauges", "Baseline and filters"
-"""Panels of the help."""
-
-
-@dataclass(frozen=True)
-class SignalOptions:
-    """How signals are read from text files, converted to strains or stresses, and cleaned."""
-
-    time_column: Annotated[
-        str | None,
-        typer.Option(metavar="NAME|NUMBER", help="Column of the times; by default the first.", rich_help_panel=FILE),
-    ] = None
-    time_unit: Annotated[
-        str | None, typer.Option(help="s, ms, µs (us) or ns; by default the header's, or s.", rich_help_panel=FILE)
-    ] = None
-    unit: Annotated[
-        str | None,
-        typer.Option(
-            help="Pa, kPa, MPa, GPa, V, mV, µV (uV), strain or µε (ue); by default the header's.", rich_help_panel=FILE
-        ),
-    ] = None
-    scale: Annotated[
-        float,
-        typer.Option(
-            help="Factor that makes values Pa, positive in tension; -1 changes the sign.", rich_help_panel=FILE
-        ),
-    ] = 1.0
-    clipped: Annotated[
-        bool, typer.Option("--clipped", help="Accept a signal that looks clipped.", rich_help_panel=FILE)
-    ] = False
-    gauge_factor: Annotated[
-        float | None, typer.Option(help="Gauge factor k, which converts voltages to strains.", rich_help_panel=BRIDGE)
-    ] = None
-    bridge: Annotated[
-        str,
-        typer.Option(
-            "--bridge",
-            help="quarter, half (two opposite gauges along the bar) or full (and two across).",
-            rich_help_panel=BRIDGE,
-        ),
-    ] = "quarter"
-    excitation: Annotated[
-        float | None, typer.Option(help="Voltage that supplies the bridge (V).", rich_help_panel=BRIDGE)
-    ] = None
-    gain: Annotated[float, typer.Option(help="Gain of its amplifier.", rich_help_panel=BRIDGE)] = 1.0
-    poisson: Annotated[
-        float | None, typer.Option(help="Poisson's ratio of the bar, for a full bridge.", rich_help_panel=BRIDGE)
-    ] = None
-    youngs_modulus: Annotated[
-        float | None,
-        typer.Option("--youngs-modulus", help="E of the bar (Pa); by default ρc².", rich_help_panel=BRIDGE),
-    ] = None
-    no_baseline: Annotated[
-        bool, typer.Option("--no-baseline", help="Remove no baseline at all.", rich_help_panel=CLEANING)
-    ] = False
-    no_drift: Annotated[bool, typer.Option("--no-drift", help="Remove no drift.", rich_help_panel=CLEANING)] = False
-    low_pass: Annotated[float | None, typer.Option(help="Keep what is below (Hz).", rich_help_panel=CLEANING)] = None
-    high_pass: Annotated[float | None, typer.Option(help="Keep what is above (Hz).", rich_help_panel=CLEANING)] = None
-    band: Annotated[
-        tuple[float, float] | None,
-        typer.Option(
-            metavar="LOW HIGH", help="Low and high pass in one: the band that remains (Hz).", rich_help_panel=CLEANING
-        ),
-    ] = None
-    notch: Annotated[
-        list[float] | None,
-        typer.Option(help="Remove this frequency (Hz). May be repeated.", rich_help_panel=CLEANING),
-    ] = None
-
-    def reading(self, column: str | None = None) -> Reading:
-        """How a column of a file is read; raises CaseError for impossible options of a bridge."""
-        from dembound.gauge.reading.signal import Reading
-
-        return Reading(column, self.time_column, self.time_unit, self.unit, self._bridge(), self.scale)
-
-    def _bridge(self) -> Bridge | None:
-        """The bridge of strain gauges; None without a gauge factor."""
-        from typing import cast, get_args
-
-        from dembound.gauge.reading.units import Bridge, Wiring
-
-        if self.bridge not in get_args(Wiring):
-            raise CaseError([f"--bridge: is {self.bridge}, must be quarter, half or full"])
-        if self.gauge_factor is None:
-            if self.excitation is not None or self.gain != 1.0 or self.bridge != "quarter":
-                raise CaseError(["--gauge-factor: is missing, --bridge, --excitation and --gain need it"])
-            return None
-        return Bridge(self.gauge_factor, cast("Wiring", self.bridge), self.excitation, self.gain, self.poisson)
-
-    def treatment(self) -> Treatment | None:
-        """Baseline and frequencies to remove from a signal; None for the defaults.
-
-        Raises CaseError for a band beside a low or high pass.
-        """
-        from dembound.gauge.baseline import Filters, Treatment
-
-        low_pass, high_pass = self.low_pass, self.high_pass
-        if self.band is not None:
-            if low_pass is not None or high_pass is not None:
-                raise CaseError(["--band: is a high and a low pass at once, it can have none beside it"])
-            high_pass, low_pass = self.band
-        filters = Filters(low_pass, high_pass, tuple(self.notch or ()))
-        treatment = Treatment(not self.no_baseline, not self.no_drift, filters)
-        return None if treatment == Treatment() else treatment
-
+_of_bars = partial(typer.Option, rich_help_panel="Bars and specimen")
+_of_pulses = partial(typer.Option, rich_help_panel="Pulses")
 
 MPA = 1e6
 """Pascals in a megapascal."""
+
+
+@dataclass(frozen=True)
+class EvaluationOptions:
+    """What is known of a test on a bar, and what is estimated."""
+
+    spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None
+    free_end: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
+    ] = None
+    estimate: Annotated[
+        bool,
+        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
+    ] = False
+    peaks: Annotated[
+        int | None, typer.Option(help="Take speed and attenuation from this number of first tension peaks.", min=2)
+    ] = None
+    pulse_end: Annotated[
+        float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
+    ] = None
+    wave_speed: Annotated[
+        float | None, typer.Option(help="Wave speed (m/s) of another test; else the results', or estimated from peaks.")
+    ] = None
+    attenuation: Annotated[
+        float | None,
+        typer.Option(help="Attenuation (1/m) of another test; else the results', or estimated from peaks."),
+    ] = None
+
+    def of(self, gauge: Gauge, path: Path) -> Findings:
+        """All estimates from a gauge in a file; raises CaseError as `evaluate` and `read_free_end`."""
+        from dembound.gauge.gauge_io import read_free_end
+        from dembound.gauge.spalling import evaluate
+
+        return evaluate(
+            gauge,
+            spall=self.spall,
+            free_end=None if self.free_end is None else read_free_end(path, self.free_end),
+            estimate=self.estimate,
+            count=self.peaks,
+            pulse_end=self.pulse_end,
+            speed=self.wave_speed,
+            coefficient=self.attenuation,
+        )
 
 
 @app.command("gauge", rich_help_panel=MORE)
@@ -150,43 +88,20 @@ def gauge(
     density: Annotated[
         float | None, typer.Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")
     ] = None,
-    spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None,
-    free_end: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
-    ] = None,
-    estimate: Annotated[
-        bool,
-        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
-    ] = False,
-    peaks: Annotated[
-        int | None, typer.Option(help="Take speed and attenuation from this number of first tension peaks.", min=2)
-    ] = None,
-    pulse_end: Annotated[
-        float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
-    ] = None,
-    wave_speed: Annotated[
-        float | None, typer.Option(help="Wave speed (m/s) of another test; else the results', or estimated from peaks.")
-    ] = None,
-    attenuation: Annotated[
-        float | None,
-        typer.Option(help="Attenuation (1/m) of another test; else the results', or estimated from peaks."),
-    ] = None,
+    *,
+    evaluation: EvaluationOptions,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
     column: Annotated[
-        str | None,
-        typer.Option(metavar="NAME|NUMBER", help="Column of the signal, if there are several.", rich_help_panel=FILE),
+        str | None, of_file(metavar="NAME|NUMBER", help="Column of the signal, if there are several.")
     ] = None,
-    *,
     signal: SignalOptions,
 ) -> None:
     """Evaluate a gauge on a bar: wave speed, attenuation, strength.
 
     Results contain position, length, density, speed and attenuation. Strengths need --spall or --free-end.
     """
-    from dembound.gauge.gauge_io import read_free_end, read_gauge
-    from dembound.gauge.spalling import evaluate
+    from dembound.gauge.gauge_io import read_gauge
     from dembound.results.reader import understood
 
     path = results_file(record) if record.is_dir() else record
@@ -195,22 +110,14 @@ def gauge(
         gauge = read_gauge(
             path, monitor, *bar, reading, treatment, signal.youngs_modulus, may_be_clipped=signal.clipped
         )
-        found = evaluate(
-            gauge,
-            spall=spall,
-            free_end=None if free_end is None else read_free_end(path, free_end),
-            estimate=estimate,
-            count=peaks,
-            pulse_end=pulse_end,
-            speed=wave_speed,
-            coefficient=attenuation,
-        )
+        found = evaluation.of(gauge, path)
+    peaks = evaluation.peaks
     if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
         err.print(f"--peaks: requests {peaks} tension peaks, there are {len(found.peaks.time)}")
     for note in gauge.notes:
         out.print(note)
     known = gauge.metadata
-    sources = ["results" if given is None else "given" for given in (wave_speed, attenuation)]
+    sources = ["results" if given is None else "given" for given in (evaluation.wave_speed, evaluation.attenuation)]
     out.print(_overview(found, sources, None if known is None else known.strength))
     if output is not None:
         from dembound.plot.laboratory import plot_gauge
@@ -256,39 +163,29 @@ def _error(error: float) -> str:
     return "" if error != error else f"{error:.2g}"
 
 
-BARS, PULSES = "Bars and specimen", "Pulses"
-"""Panels of the help."""
-
 Window = Annotated[
     tuple[float, float] | None,
-    typer.Option(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found.", rich_help_panel=PULSES),
+    _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found."),
 ]
-Column = Annotated[
-    str | None, typer.Option(metavar="NAME|NUMBER", help="Its column, or monitor of results.", rich_help_panel=FILE)
-]
-
-
-def _of_bars(words: str) -> typer.models.OptionInfo:
-    """An option about bars and specimen."""
-    return typer.Option(help=words, rich_help_panel=BARS)
+Column = Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Its column, or monitor of results.")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class BarOptions:
     """The two bars and the specimen between them."""
 
-    wave_speed: Annotated[float, _of_bars("Of the bars (m/s).")]
-    density: Annotated[float, _of_bars("Of the bars (kg/m³).")]
-    bar_diameter: Annotated[float, _of_bars("Of both bars (m).")]
-    incident_gauge: Annotated[float, _of_bars("From the gauge to the specimen (m).")]
-    transmitted_gauge: Annotated[float, _of_bars("From the specimen to the gauge (m).")]
-    specimen_length: Annotated[float, _of_bars("Length of the specimen (m).")]
-    specimen_diameter: Annotated[float | None, _of_bars("Diameter of the specimen (m).")] = None
-    specimen_area: Annotated[float | None, _of_bars("Or its area (m²).")] = None
-    bar_length: Annotated[float | None, _of_bars("Length of each bar (m), to stop before its end reflects waves.")] = (
-        None
-    )
-    attenuation: Annotated[float, _of_bars("Of the bars (1/m).")] = 0.0
+    wave_speed: Annotated[float, _of_bars(help="Of the bars (m/s).")]
+    density: Annotated[float, _of_bars(help="Of the bars (kg/m³).")]
+    bar_diameter: Annotated[float, _of_bars(help="Of both bars (m).")]
+    incident_gauge: Annotated[float, _of_bars(help="From the gauge to the specimen (m).")]
+    transmitted_gauge: Annotated[float, _of_bars(help="From the specimen to the gauge (m).")]
+    specimen_length: Annotated[float, _of_bars(help="Length of the specimen (m).")]
+    specimen_diameter: Annotated[float | None, _of_bars(help="Diameter of the specimen (m).")] = None
+    specimen_area: Annotated[float | None, _of_bars(help="Or its area (m²).")] = None
+    bar_length: Annotated[
+        float | None, _of_bars(help="Length of each bar (m), to stop before its end reflects waves.")
+    ] = None
+    attenuation: Annotated[float, _of_bars(help="Of the bars (1/m).")] = 0.0
 
     def setup(self, modulus: float | None) -> Setup:
         """The setup; raises CaseError for impossible data, and unless the specimen has exactly one size."""
@@ -319,8 +216,7 @@ def hopkinson(
     reflected_window: Window = None,
     transmitted_window: Window = None,
     opposite: Annotated[
-        bool,
-        typer.Option("--opposite", help="The transmission bar's gauge has the opposite sign.", rich_help_panel=PULSES),
+        bool, _of_pulses("--opposite", help="The transmission bar's gauge has the opposite sign.")
     ] = False,
     equilibrium: Annotated[float, typer.Option(help="Largest difference of the forces over their mean.")] = 0.05,
     output: Annotated[Path | None, PICTURE] = None,

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from dembound.cli.app import Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place
-from dembound.cli.console import err, out, print_rows
-from dembound.cli.options import with_tables
-from dembound.cli.sweep import FAILED, print_warnings, shown
+from dembound.cli.console import ending_with, err, out, print_rows
+from dembound.cli.options import leave, with_tables
+from dembound.cli.sweep import FAILED, cells_of, print_failed, shown
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.studies.asked import Loading
-from dembound.words import in_one_unit, percent, with_unit
+from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
     from dembound.casefile.disks.model import DiskCase
@@ -116,16 +115,14 @@ def laboratory(
     specimens = specimens_of(sample, seeds, sides)
     err.print(f"{loaded.name}: {kind}, {sample.in_words}")
     folder = output / f"{loaded.name}_{kind}"
-    try:
-        with shown(loaded.name, "samples", lambda standing: _under_way(sample, folder, standing)) as report:
-            found = perform(sample, specimens, options, folder, report, between)
-    except KeyboardInterrupt as stop:
-        err.print(f"{loaded.name}: stopped; the same command continues what is left")
-        raise typer.Exit(exit_code_of(stop)) from None
+    with (
+        ending_with(f"{loaded.name}: stopped; the same command continues what is left"),
+        shown(loaded.name, "samples", lambda standing: _under_way(sample, folder, standing)) as report,
+    ):
+        found = perform(sample, specimens, options, folder, report, between)
     ratios = list(ratios_of(found, output))
     has_failed = _print(found, ratios)
-    for path in _leave(found, ratios):
-        out.print(f"wrote {path}")
+    _leave(found, ratios)
     if has_failed:
         raise typer.Exit(FAILED)
 
@@ -152,12 +149,8 @@ def _under_way(sample: Sample, folder: Path, standing: Standing) -> str:
 def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
     """Print failures, warnings, means and ratios; returns whether a run has failed."""
     name = tested.sample.case.name
-    failed = [
-        (s.member.name, state) for s, state in zip(tested.specimens, tested.states, strict=True) if state != "done"
-    ]
-    for member, state in failed:
-        err.print(f"{name}: {member}: failed, {state}")
-    print_warnings(name, tested.warnings_of_runs, len(tested.specimens), "samples")
+    members = [each.member for each in tested.specimens]
+    failed = print_failed(name, members, tested.states, tested.warnings_of_runs, "samples")
     for line in tested.warnings:
         err.print(f"{name}: warning: {line}")
     found = [each for each in tested.statistics if each.quantity in PRINTED]
@@ -165,7 +158,7 @@ def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
         print_rows(name, list(_rows(found)), left=2 if any(each.group for each in found) else 1)
     for ratio in ratios:
         out.print(f"{name}: compressive over tensile strength {ratio.value:.3g}, with {ratio.folder}")
-    return bool(failed)
+    return failed > 0
 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
@@ -175,33 +168,24 @@ def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
     grouped = any(each.group for each in statistics)
     yield *(("pressure",) if grouped else ()), "quantity", "n", "mean", "spread", "95 % ±", "unit"
     for each in statistics:
-        numbers, unit = (each.mean, each.spread, each.interval), UNITS.get(each.quantity, "1")
-        texts = [f"{value:.3g}" for value in numbers]
-        if unit == "Pa":
-            texts, unit = in_one_unit(numbers, unit)
-        cells = ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
         group = (with_unit(each.group["pressure"], "Pa") if each.group else "all",) if grouped else ()
-        yield *group, PRINTED[each.quantity], str(each.count), *cells, "" if unit == "1" else unit
+        yield *group, PRINTED[each.quantity], *cells_of(each, UNITS.get(each.quantity, "1"))
 
 
-def _leave(tested: Tested, ratios: Sequence[Ratio]) -> Iterator[Path]:
-    """Write tables, cases and pictures, yielding each."""
+def _leave(tested: Tested, ratios: Sequence[Ratio]) -> None:
+    """Write tables, cases and pictures, printing each."""
     from dembound.studies.laboratory.tables import write_tables
 
-    yield from write_tables(tested, ratios)
-    if tested.done:
-        from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
-        from dembound.plot.style import save
+    for path in write_tables(tested, ratios):
+        out.print(f"wrote {path}")
+    if not tested.done:
+        return
+    from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
 
-        name, kind = tested.sample.case.name, tested.sample.test
-        save(plot_curves(f"{name}: {kind}", tested.curves), tested.folder / "curves.png", None)
-        yield tested.folder / "curves.png"
-        first = tested.done[0]
-        save(plot_sample(tested.record(first), tested.curves[first.member.name]), tested.folder / "sample.png", None)
-        yield tested.folder / "sample.png"
-        if tested.envelopes:
-            points = [(each.pressure, tested.curves[each.member.name].strength) for each in tested.done]
-            line = {s.quantity: s.mean for s in tested.statistics if not s.group}
-            figure = plot_envelope(f"{name}: {kind}", points, line["friction_angle"], line["cohesion"])
-            save(figure, tested.folder / "envelope.png", None)
-            yield tested.folder / "envelope.png"
+    title, first = f"{tested.sample.case.name}: {tested.sample.test}", tested.done[0]
+    leave(plot_curves(title, tested.curves), tested.folder / "curves.png")
+    leave(plot_sample(tested.record(first), tested.curves[first.member.name]), tested.folder / "sample.png")
+    if tested.envelopes:
+        points = [(each.pressure, tested.curves[each.member.name].strength) for each in tested.done]
+        line = {s.quantity: s.mean for s in tested.statistics if not s.group}
+        leave(plot_envelope(title, points, line["friction_angle"], line["cohesion"]), tested.folder / "envelope.png")

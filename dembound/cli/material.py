@@ -11,12 +11,11 @@ import typer
 
 from dembound.cli.app import MORE, PICTURE, Cases, Output, PictureTitle, Settings, Side, app, few, load_disks, text_for
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import err, out, print_rows
+from dembound.cli.console import ending_with, err, out, print_lines, print_rows
 from dembound.cli.laboratory import LoadingOptions
 from dembound.cli.options import leave, with_tables
 from dembound.cli.sweep import FAILED, shown
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.words import percent
 
 if TYPE_CHECKING:
@@ -72,22 +71,19 @@ def match_strengths(
     material, options = case.material, loading.options()
     cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
     search, done = Search(wanted, cohesion, spread_of(material.pb_scatter)), []
-    try:
-        with shown(case.name, "samples") as report:
-            measure = measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
-            for trial in search.trials(measure):
-                done.append(trial)
-                for line in in_words(trial, wanted):
-                    out.print(f"{case.name}: {line}")
-    except KeyboardInterrupt as stop:
-        err.print(f"{case.name}: stopped; the same command continues what is left")
-        raise typer.Exit(exit_code_of(stop)) from None
+    said = f"{case.name}: stopped; the same command continues what is left"
+    with ending_with(said), shown(case.name, "samples") as report:
+        measure = measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
+        for trial in search.trials(measure):
+            done.append(trial)
+            for line in in_words(trial, wanted):
+                out.print(f"{case.name}: {line}")
     best = search.best(done)
     keys = keys_of(case, best.pb_ten, best.pb_coh)
     tested = with_bonds(case, best.pb_ten, best.pb_coh)
-    said = [f"{FOUND} {strength_in_words(test, best)}; {loading.sample(tested, test).in_words}" for test in wanted]
+    comments = [f"{FOUND} {strength_in_words(test, best)}; {loading.sample(tested, test).in_words}" for test in wanted]
     text = edited(text_for(target, path, case, settings), keys)
-    write_text(target, commented(text, "material.pb_ten", said, FOUND))
+    write_text(target, commented(text, "material.pb_ten", comments, FOUND))
     out.print(f"wrote {target}")
     if best.deviation(wanted) > CLOSE:
         missed = ", ".join(f"{test} is {excess_in_words(test, best, wanted)}" for test in wanted)
@@ -137,8 +133,7 @@ def material(
     scene = build(load_disks(case, changes))
     found = describe_materials(scene)
     if as_json:
-        for line in json.dumps(found, indent=2, allow_nan=False).splitlines():
-            out.print(line, soft_wrap=True)
+        print_lines(*json.dumps(found, indent=2, allow_nan=False).splitlines())
         return
     for each, own in zip(found, materials_of(scene), strict=True):
         if own.layer:

@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-import typer
 from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 from rich.text import Text
@@ -18,10 +17,9 @@ from dembound.accuracy.proposal import Proposal
 from dembound.accuracy.table import WIDTH, in_one_line, lines_of
 from dembound.accuracy.watch import Watch
 from dembound.cli.compiling import COMPILATION
-from dembound.cli.console import INTERVAL, err, out
+from dembound.cli.console import INTERVAL, ending_with, err, print_lines
 from dembound.formulas.cause import Cause
 from dembound.formulas.history import Motions
-from dembound.interrupts import exit_code_of
 from dembound.motion.trackers import Run
 from dembound.running import Progress
 from dembound.words import percent, with_unit
@@ -100,11 +98,8 @@ def watched(name: str, made: Callable[[str, Shown], Watching] = Watching) -> Ite
     """
     with progress_of(name) as shown:
         watching = made(name, shown)
-        try:
+        with ending_with(lambda: f"{name}: stopped; missing: {watching.missing}"):
             yield watching
-        except KeyboardInterrupt as stop:
-            err.print(f"{name}: stopped; missing: {watching.missing}")
-            raise typer.Exit(exit_code_of(stop)) from None
 
 
 class _Compiling(ProgressColumn):
@@ -245,5 +240,4 @@ class Table(Watching):
         left = ", ".join(percent(each, 3) for each in self._left)
         self.missing = f"the cheapest choices within {left}" if left else "nothing"
         with self.shown.aside():
-            for line in lines:
-                out.print(line, markup=False, soft_wrap=True)
+            print_lines(*lines)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, ending_in, writable
 from dembound.cli.console import INTERVAL, err, out
 from dembound.cli.options import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors, SceneField, leave
 from dembound.cli.results import results_file
@@ -20,19 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def _page(path: Path) -> Path:
-    """A page to write. Raises CaseError if its name does not end in ``.html``."""
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise CaseError([f"--output: is {path}, must end in .html"])
-    return writable(path) or path
-
-
 @app.command("report")
 def report(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=_page)] = Path(
-        "report.html"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=ending_in(".html", ".htm"))
+    ] = Path("report.html"),
 ) -> None:
     """Write an HTML page of runs: scenes, histories, spectra, energy.
 

@@ -25,14 +25,16 @@ from dembound.cli.app import (
     prepare_computing,
     require_one_place,
 )
-from dembound.cli.console import INTERVAL, err, out, print_rows
+from dembound.cli.calibration import OneCase
+from dembound.cli.console import INTERVAL, ending_with, err, out, print_rows
+from dembound.cli.options import leave
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.studies.asked import Method
 from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
     from dembound.studies.library import LoadFactor
+    from dembound.studies.sweep.members import Member
     from dembound.studies.sweep.study import Report, Standing
     from dembound.studies.sweep.tables import Statistic, Swept
 
@@ -56,7 +58,7 @@ SweepAction = Literal["run", "calibrate"]
 
 @app.command("sweep")
 def sweep(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
+    case: OneCase,
     vary: Vary = None,
     together: Annotated[
         bool | None,
@@ -112,18 +114,14 @@ def sweep(
     for line in left_out:
         err.print(f"{loaded.name}: {line}")
     folder = output / f"{loaded.name}_sweep"
-    try:
-        with shown(loaded.name) as report:
-            outcomes = sweep_all(members, options, folder, report)
-    except KeyboardInterrupt as stop:
-        err.print(f"{loaded.name}: stopped; the same command continues what is left")
-        raise typer.Exit(exit_code_of(stop)) from None
+    said = f"{loaded.name}: stopped; the same command continues what is left"
+    with ending_with(said), shown(loaded.name) as report:
+        outcomes = sweep_all(members, options, folder, report)
     from dembound.studies.sweep.tables import Swept
 
     swept = Swept(loaded, options.action, members, outcomes, quantity or [])
     has_failed = _print(swept)
-    for path in _leave(swept, folder, title):
-        out.print(f"wrote {path}")
+    _leave(swept, folder, title)
     if has_failed:
         raise typer.Exit(FAILED)
 
@@ -177,29 +175,32 @@ def _print(swept: Swept) -> bool:
     """Print failed members, warnings, and means of the shown quantities; returns whether any has failed."""
     from dembound.studies.sweep.tables import statistics
 
-    failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
-    for member, state in failed:
-        err.print(f"{swept.case.name}: {member}: failed, {state}")
-    print_warnings(swept.case.name, swept.warnings, len(swept.members))
+    failed = print_failed(swept.case.name, swept.members, swept.states, swept.warnings)
     found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
     if found:
         print_rows(swept.case.name, list(_rows(found[:MOST_ROWS])), left=2)
     if len(found) > MOST_ROWS:
         out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
-    out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
-    return bool(failed)
+    out.print(f"{swept.case.name}: {len(swept.members) - failed} of {len(swept.members)} members done")
+    return failed > 0
 
 
-def print_warnings(name: str, warnings: Mapping[str, int], count: int, members: str = "members") -> None:
-    """Print distinct warnings of a number of members, each once with the number of those that have it.
+def print_failed(
+    name: str, own: Sequence[Member], states: Sequence[str], warnings: Mapping[str, int], members: str = "members"
+) -> int:
+    """Print the members of a sweep that failed, and distinct warnings, each once with the number of those that have it.
 
-    members : as of `shown`.
+    own : the members; members : as of `shown`. Returns how many have failed.
     """
+    failed = [(member.name, state) for member, state in zip(own, states, strict=True) if state != "done"]
+    for member, state in failed:
+        err.print(f"{name}: {member}: failed, {state}")
     for text, having in list(warnings.items())[:MOST_WARNINGS]:
-        err.print(f"{name}: warning: {text} ({having} of {count} {members})")
+        err.print(f"{name}: warning: {text} ({having} of {len(own)} {members})")
     if len(warnings) > MOST_WARNINGS:
         left = len(warnings) - MOST_WARNINGS
         err.print(f"{name}: {left} more warnings are in summary.json of the {members}")
+    return len(failed)
 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
@@ -211,27 +212,32 @@ def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
     for each in statistics:
         pairs = zip(short_keys(each.group), each.group.values(), strict=True)
         group = ", ".join(f"{key} {in_words(value)}" for key, value in pairs)
-        numbers, unit = (each.mean, each.spread, each.interval), unit_of(each.quantity)
-        texts = [f"{value:.3g}" for value in numbers]
-        if unit in PREFIXED:
-            texts, unit = in_one_unit(numbers, unit)
-        shown = ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
-        yield group or "all", each.quantity, str(each.count), *shown, "" if unit == "1" else unit
+        yield group or "all", each.quantity, *cells_of(each, unit_of(each.quantity))
 
 
-def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:
-    """Write the results of a sweep, yielding each file."""
+def cells_of(statistic: Statistic, unit: str) -> Iterator[str]:
+    """Count, mean, spread, interval and unit of a statistic as cells of a row."""
+    numbers = statistic.mean, statistic.spread, statistic.interval
+    texts = [f"{value:.3g}" for value in numbers]
+    if unit in PREFIXED:
+        texts, unit = in_one_unit(numbers, unit)
+    yield str(statistic.count)
+    yield from ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
+    yield "" if unit == "1" else unit
+
+
+def _leave(swept: Swept, folder: Path, title: str | None) -> None:
+    """Write the results of a sweep, printing each file."""
     from dembound.files import remove
     from dembound.studies.sweep.tables import write_tables
 
-    yield from write_tables(swept, folder)
+    for path in write_tables(swept, folder):
+        out.print(f"wrote {path}")
     remove(folder / "sweep.png")
     if swept.shown:
         from dembound.plot.stability import plot_sweep
-        from dembound.plot.style import save
 
-        save(plot_sweep(folder / "sweep.h5"), folder / "sweep.png", title)
-        yield folder / "sweep.png"
+        leave(plot_sweep(folder / "sweep.h5"), folder / "sweep.png", title)
 
 
 @app.command("library", rich_help_panel=MORE)
