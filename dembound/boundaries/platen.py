@@ -84,6 +84,17 @@ class Holding(Keeping):
         return edge.only(is_in_range((low, high), along, edge.length), high - low)
 
 
+class Wall(Holding):
+    """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
+
+    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
+
+    @property
+    def is_artificial(self) -> bool:
+        """The value of the key ``artificial``."""
+        return self.artificial
+
+
 def beside_disks(place: str, side: str, table: Boundary | None, tables: Mapping[str, Any]) -> Iterator[str]:
     """Mistakes of the range `within` of the table at a place of the case."""
     if not isinstance(table, Holding) or table.within is None:

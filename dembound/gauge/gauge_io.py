@@ -11,7 +11,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.baseline import Treatment, treated
-from dembound.gauge.peaks import NOISE_FACTOR, white_noise, width_of
+from dembound.gauge.peaks import NOISE_FACTOR, longest, white_noise, width_of
 from dembound.gauge.reading.recorded import (
     BarMetadata,
     is_record,
@@ -204,10 +204,8 @@ def unfit_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterato
 def clipped(values: np.ndarray) -> int:
     """Number of equal samples at the largest value of a signal (k,) whose slope breaks off there; 0 if it does not."""
     top = float(values.max())
-    at = np.flatnonzero(np.diff(np.concatenate([[0], values == top, [0]])))
-    starts, ends = at[::2], at[1::2]
-    longest = int((ends - starts).argmax())
-    first, count = int(starts[longest]), int(ends[longest] - starts[longest])
+    first, end = longest(values == top) or (0, 0)
+    count = end - first
     if top <= 0.0 or count < max(LEAST_CLIPPED, SHARE_CLIPPED * width_of(np.maximum(values, 0.0))):
         return 0
     step = float(np.diff(np.unique(values)[-50:]).min())

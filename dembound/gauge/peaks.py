@@ -203,6 +203,15 @@ def width_of(values: np.ndarray) -> int:
     return int(low[low > crest].min(initial=len(values)) - low[low < crest].max(initial=-1)) - 1
 
 
+def longest(there: np.ndarray) -> tuple[int, int] | None:
+    """First sample, and the one after the last, of the longest run of true values (n,); None without any."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], there.astype(int), [0]])))
+    if not len(edges):
+        return None
+    longest = int((edges[1::2] - edges[::2]).argmax())
+    return int(edges[2 * longest]), int(edges[2 * longest + 1])
+
+
 def white_noise(values: np.ndarray) -> float:
     """Standard deviation of white noise: from the median second difference, which is small for a smooth history."""
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6.0))

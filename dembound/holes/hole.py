@@ -9,7 +9,7 @@ import numpy as np
 from dembound.holes.outline import Outline
 from dembound.places import includes
 from dembound.roots import root
-from dembound.table import Box, FileName, Table, quantity
+from dembound.table import Box, FileName, Table, quantity, shifted_place
 
 Apart = Callable[[int, float], float]
 """Distance (m) of a wall across an axis, at a place (m), from the nearest plane between disks."""
@@ -84,6 +84,16 @@ class Hole(Table, ABC):
     def outline(self) -> Outline | None:
         """The rim of the hole, on which a pressure acts; None unless it is a simple closed curve."""
         return None
+
+
+class Centred(Hole):
+    """A hole with a centre."""
+
+    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
+        return self.model_copy(update={"centre": shifted_place(self.centre, by)})
 
 
 FINE = 8
