@@ -25,7 +25,8 @@ from dembound.plot.style import COLOURS, REFERENCE, Powers, finished, line_style
 from dembound.results.reader import cracks_until, open_record, snapshots_of
 from dembound.results.recording import LoadingCurve, TestName
 
-MEGA = 1e6
+MEGA, MICRO = 1e6, 1e-6
+"""Pascals in a megapascal, and seconds in a microsecond."""
 
 STRESS: Mapping[TestName, str] = {
     "ucs": "axial stress, compression positive (MPa)",
@@ -169,10 +170,7 @@ def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> Non
     panel.plot(middle + half * np.cos(angle), half * np.sin(angle), color=COLOURS[0], label=label)
 
 
-MPA = 1e6
-"""Pascals in a megapascal."""
-
-MEASURED = {"Pa": ("stress", "MPa", MPA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
+MEASURED = {"Pa": ("stress", "MPa", MEGA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
 """Unit of a gauge's signal -> its name, and the name and size of the unit in pictures."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
@@ -227,16 +225,12 @@ def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> No
     stresses = near_free_end(*strength.pulse, gauge.position, gauge.length, speed, places, times)
     for index, (time, stress) in enumerate(zip(times, stresses.T, strict=True)):
         looks: dict[str, Any] = line_style(index)
-        panel.plot(places, stress / MPA, label=f"at {1e3 * time:.3f} ms", **looks)
-    label = f"largest tension at {strength.position:g} m: {strength.nominal / MPA:.3g} MPa"
-    panel.plot(strength.position, strength.nominal / MPA, "*", color=COLOURS[-1], markersize=10, label=label)
+        panel.plot(places, stress / MEGA, label=f"at {1e3 * time:.3f} ms", **looks)
+    label = f"largest tension at {strength.position:g} m: {strength.nominal / MEGA:.3g} MPa"
+    panel.plot(strength.position, strength.nominal / MEGA, "*", color=COLOURS[-1], markersize=10, label=label)
     panel.axvline(strength.position, color=REFERENCE, linewidth=1.0, zorder=1)
     panel.set_xlabel("distance from the loaded end (m)")
     panel.set_ylabel("stress, tension positive (MPa)")
-
-
-MPA, MICRO = 1e6, 1e-6
-"""Pascals in a megapascal, and seconds in a microsecond."""
 
 
 @styled
@@ -255,22 +249,22 @@ def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
     for (name, values), colour in zip(passed.items(), COLOURS, strict=False):
         waves.plot(time, values / MICRO, color=colour, label=name)
     _label_history(waves, "strain of waves (µε, load positive)", found)
-    forces.plot(time, found.front / MPA, color=COLOURS[0], label="front, two waves")
-    forces.plot(time, found.back / MPA, color=COLOURS[1], linestyle="--", label="back, one wave")
+    forces.plot(time, found.front / MEGA, color=COLOURS[0], label="front, two waves")
+    forces.plot(time, found.back / MEGA, color=COLOURS[1], linestyle="--", label="back, one wave")
     _label_history(forces, "stress at the faces (MPa)", found)
     rates.plot(time, found.rate, color=COLOURS[0], label="three waves")
     rates.plot(time, found.one_wave_rate, color=COLOURS[1], linestyle="--", label="one wave")
     _label_history(rates, "strain rate (1/s)", found)
-    curve.plot(100.0 * found.strain, found.stress / MPA, color=REFERENCE, label="three waves")
+    curve.plot(100.0 * found.strain, found.stress / MEGA, color=REFERENCE, label="three waves")
     there = found.in_equilibrium
     curve.plot(
         np.where(there, 100.0 * found.strain, np.nan),
-        found.stress / MPA,
+        found.stress / MEGA,
         color=COLOURS[0],
         linewidth=2.4,
         label="in equilibrium",
     )
-    curve.plot(100.0 * found.one_wave_strain, found.back / MPA, color=COLOURS[1], linestyle="--", label="one wave")
+    curve.plot(100.0 * found.one_wave_strain, found.back / MEGA, color=COLOURS[1], linestyle="--", label="one wave")
     curve.set_xlabel("strain (%)")
     curve.set_ylabel("stress (MPa)")
     curve.legend()

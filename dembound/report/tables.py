@@ -32,15 +32,21 @@ class Table:
     rows: Sequence[Sequence[str]]
 
 
-def side_by_side(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
-    """A table with a column for each run, and a row for each entry that any of them has."""
+def side_by_side(
+    title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries], *, different: bool = False
+) -> Table | None:
+    """A table with a column for each run, and a row for each entry that any of them has; None without rows.
+
+    different : only entries in which the runs differ.
+    """
     found = [dict(entries(run)) for run in runs]
     names = dict.fromkeys(name for each in found for name in each)
     rows = [[name, *(each.get(name, NONE) for each in found)] for name in names]
-    return Table(title, ["", *(run.name for run in runs)], rows)
+    rows = [row for row in rows if not different or len(set(row[1:])) > 1]
+    return Table(title, ["", *(run.name for run in runs)], rows) if rows else None
 
 
-def overview(runs: Sequence[ReportedRun]) -> Table:
+def overview(runs: Sequence[ReportedRun]) -> Table | None:
     """Table of the runs: case, contents, and how each run ended."""
     return side_by_side("Runs", runs, _overview)
 
@@ -84,13 +90,8 @@ def _contents(run: ReportedRun) -> Iterator[str]:
 
 def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
     """The keys of the cases in which the runs differ; None for one run or without differences."""
-    found = [dict(_flat(run.summary.get("keys", {}))) for run in runs]
-    names = dict.fromkeys(name for each in found for name in each)
-    different = [name for name in names if len({each.get(name, NONE) for each in found}) > 1]
-    if not different:
-        return None
-    rows = [[name, *(each.get(name, NONE) for each in found)] for name in different]
-    return Table("Keys of the cases that differ", ["", *(run.name for run in runs)], rows)
+    title = "Keys of the cases that differ"
+    return side_by_side(title, runs, lambda run: _flat(run.summary.get("keys", {})), different=True)
 
 
 def _flat(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
@@ -183,7 +184,7 @@ def _each(side: Mapping[str, Any], key: str) -> str:
 
 def energies(runs: Sequence[ReportedRun]) -> Table | None:
     """The last entries of the energy ledgers; None without summaries."""
-    return _or_none(side_by_side("Energy at the end", runs, _energies))
+    return side_by_side("Energy at the end", runs, _energies)
 
 
 def _energies(run: ReportedRun) -> Entries:
@@ -208,7 +209,7 @@ def _joules(energy: float, run: ReportedRun) -> str:
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:
     """Seconds by part of each run, rate and RAM; None without summaries."""
-    return _or_none(side_by_side("Where the time went", runs, _time))
+    return side_by_side("Where the time went", runs, _time)
 
 
 def _time(run: ReportedRun) -> Entries:
@@ -223,7 +224,7 @@ def _time(run: ReportedRun) -> Entries:
     yield "memory", f"{summary['memory_bytes'] / 1e6:.0f} MB"
 
 
-def versions(runs: Sequence[ReportedRun]) -> Table:
+def versions(runs: Sequence[ReportedRun]) -> Table | None:
     """The version and the seed of each run, and from where it was resumed."""
     return side_by_side("Versions", runs, _version)
 
@@ -238,17 +239,13 @@ def _version(run: ReportedRun) -> Entries:
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
     """Estimated errors, RMS over RMS, of the runs that have them; None without any."""
-    return _or_none(side_by_side("Estimated errors", runs, _estimated))
+    return side_by_side("Estimated errors", runs, _estimated)
 
 
 def _estimated(run: ReportedRun) -> Entries:
     """Estimated errors of one run."""
     if KEY in run.summary:
         yield from entries(run.summary[KEY])
-
-
-def _or_none(table: Table) -> Table | None:
-    return table if table.rows else None
 
 
 @dataclass(frozen=True)
