@@ -24,9 +24,8 @@ from dembound.errors import CaseError
 from dembound.files import replacing
 from dembound.gauge.baseline import Treatment, treated
 from dembound.gauge.estimates import FEWEST
-from dembound.gauge.gauge_io import implausible_size, not_above_zero, unfit_signal
+from dembound.gauge.gauge_io import implausible_size, is_record, not_above_zero, require_for_results, unfit_signal
 from dembound.gauge.peaks import CREST, denoised, longest, noise_left, smooth, white_noise, width_of
-from dembound.gauge.reading.recorded import is_record, require_for_results
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.results.reader import history_of, open_record
 from dembound.words import percent

@@ -8,9 +8,8 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.gauge import estimates
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.gauge_io import Gauge, implausible_size, not_on_bar
+from dembound.gauge.gauge_io import FREE, Gauge, implausible_size, not_on_bar
 from dembound.gauge.peaks import Peaks, matched, noise_worth, positive_peaks
-from dembound.gauge.reading.recorded import FREE
 
 AGREEMENT = 0.05
 """Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""
