@@ -218,7 +218,7 @@ def stability(
 
 def _stability_overview(found: Sequence[Stability], title: str) -> Table:
     """One line for each law or stage and part: limits, the case's own step, and how its energy changed."""
-    from dembound.studies.noise import RESOLUTION
+    from dembound.studies.stability import RESOLUTION
 
     overview = compact_table("", "limit (s)", "measured", "own step", "energy", "rise", "", title=title)
     for each in found:

@@ -40,7 +40,7 @@ def report(
 
 def _movie(path: Path) -> Path:
     """A movie to write, of a format that can be written here."""
-    from dembound.report.movie import require_movie
+    from dembound.report.pictures import require_movie
 
     require_movie(path)
     return (writable(path) if path.suffix else None) or path
@@ -74,7 +74,7 @@ def movie(
 
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """
-    from dembound.report.movie import movie_of, write_movie
+    from dembound.report.pictures import movie_of, write_movie
     from dembound.results.reader import understood
 
     file = results_file(results)

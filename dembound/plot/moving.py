@@ -13,8 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError
 from dembound.plot.bar import FIELDS, mark_damage, read_course
-from dembound.plot.continuum import GROUP
-from dembound.plot.disks import Window
+from dembound.plot.disks import GROUP, Window
 from dembound.plot.field import OF_THE_RUN, Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part

@@ -12,8 +12,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from dembound.plot.continuum import draw_continuum
-from dembound.plot.disks import Window, draw_field, draw_outlines
+from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record

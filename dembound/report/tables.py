@@ -11,7 +11,7 @@ from dembound.boundaries.description import FACTORS
 from dembound.errors import CaseError, RecordError
 from dembound.kinds import kind_of_record
 from dembound.motion.kind import Kind
-from dembound.plot.continuum import GROUP
+from dembound.plot.disks import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
 from dembound.results.histories import KEY, entries
 from dembound.results.reader import laws_in_words, open_record, record_names, understood
