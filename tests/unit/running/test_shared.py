@@ -1,4 +1,4 @@
-"""Whose results a run may replace, and how large they are; runs of a batch share stages, and requests to stop."""
+"""Whose results a run replaces, what is known of it before it runs, and what runs of a batch share."""
 
 import threading
 from dataclasses import replace
@@ -14,9 +14,11 @@ from dembound.casefile import Case
 from dembound.disks.rest import stage as static
 from dembound.errors import CaseError
 from dembound.interrupts import Interrupts, Stopped
+from dembound.motion.endings import monitored
 from dembound.motion.memory import in_words
+from dembound.motion.paths import first_arrivals
 from dembound.results.results import Results
-from dembound.running import Shared, plan, planning, run_case
+from dembound.running import Shared, plan, planning, run_case, warnings_before
 from dembound.running.planning import ALWAYS, results_bytes, space_warnings
 from dembound.running.recorded import recorded_case
 
@@ -137,3 +139,28 @@ def test_a_disk_with_less_space_is_warned_of_with_both_numbers(bar, tmp_path, mo
     facts, warnings = check.check(planned.scene.case)
     assert facts["disk"] == f"about {need} of results; the disk has 100 kB free"
     assert warning in warnings
+
+
+def test_what_is_missed_in_results_is_warned_of(bar) -> None:
+    def warned(changes: dict, words: str) -> list[str]:
+        return [line.split(":")[0] for line in warnings_before(plan(bar(changes))) if words in line]
+
+    # disks are 0.5 m wide; one is centred at (5.25, 0.25) m
+    for x, names in ((5.2, ["monitor.b"]), (5.8, [])):
+        two = [{"name": "a", "position": [5.25, 0.25]}, {"name": "b", "position": [x, 0.3]}]
+        assert warned({"monitor": two}, "records the same") == names
+    for snapshots, names in ((0, ["output.stress and output.contacts"]), (1, [])):
+        output = {"stress": True, "contacts": True, "snapshots": snapshots}
+        assert warned({"output": output}, "output.stress and output.contacts: is about snapshots") == names
+
+
+def test_monitors_that_no_wave_reaches_are_named_before_the_run(bar) -> None:
+    """The monitor of the farther end: its way over the speed of the fastest waves, of which the run is a share."""
+    planned = plan(bar())
+    sources, front = planned.kind.sources(planned.scene), planned.kind.front(planned.scene, planned.time_step)
+    first = first_arrivals(sources, front, monitored(planned.scene))
+    farthest = planned.scene.case.monitor[int(first.argmax())].name
+    for share, late in ((0.9, True), (1.1, False)):
+        lines = warnings_before(plan(bar({"run.duration": share * float(first.max())})))
+        found = [line for line in lines if "the first wave reaches it" in line]
+        assert [farthest in line and f"reaches it at {first.max():.4g} s" in line for line in found] == late * [True]
