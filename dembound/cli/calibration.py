@@ -124,12 +124,9 @@ def _require_no_other(target: Path, text: str, factors: Sequence[str]) -> None:
     except (CaseError, UnicodeDecodeError):
         replaced = False
     if not replaced:
-        raise CaseError(
-            [
-                f"{target}: exists already and differs from the case by more than {', '.join(factors)}; calibrate that "
-                "file to change these in it, or give another --calibrated FILE or --name"
-            ]
-        )
+        said = f"exists already and differs from the case by more than {', '.join(factors)}"
+        advice = "calibrate that file to change these in it, or give another --calibrated FILE or --name"
+        raise CaseError([f"{target}: {said}; {advice}"])
 
 
 def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> None:

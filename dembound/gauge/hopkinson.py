@@ -279,12 +279,8 @@ def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> 
         raise CaseError([f"--incident-window: {said}, the record is from {time[0]:.6g} to {time[-1]:.6g} s"])
     left = float(np.interp(starts[0] + length, time, signals.incident)) / float(np.abs(signals.incident).max())
     if abs(left) > ENDED:
-        raise CaseError(
-            [
-                f"--incident-window: the incident pulse has not ended at {starts[0] + length:.6g} s, when its "
-                f"reflection is back, or the window or the record ends ({percent(left)} of its crest)"
-            ]
-        )
+        said = f"the incident pulse has not ended at {starts[0] + length:.6g} s, when its reflection is back"
+        raise CaseError([f"--incident-window: {said}, or the window or the record ends ({percent(left)} of its crest)"])
     since = step * np.arange(int(length / step))
     pulses = zip((signals.incident, signals.incident, signals.transmitted), starts, (near, -near, -far), strict=True)
     moved = [math.exp(-setup.attenuation * way) * np.interp(at + since, time, values) for values, at, way in pulses]
