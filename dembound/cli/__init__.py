@@ -12,7 +12,6 @@ from dembound.cli import (
     chart,
     exact,
     gauge,
-    laboratory,
     material,
     results,
     showing,

@@ -1,4 +1,4 @@
-"""Commands without a whole run: exact solutions, dispersion on bars, stability of the time step."""
+"""Commands without a whole run: exact solutions, dispersion on bars, stability of the time step, packings."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from rich.text import Text
 from dembound.cli.app import (
     MORE,
     PICTURE,
+    Cases,
     Name,
     Output,
     PictureTitle,
     Settings,
+    Side,
     Threads,
     app,
     load_case,
@@ -29,6 +31,8 @@ from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError, RunError
 
 if TYPE_CHECKING:
+    from dembound.boundaries.edge import Edge
+    from dembound.disks.scene import DiskScene
     from dembound.exact.dispersion import Lattice, Speed
     from dembound.plot.reflection import Points
     from dembound.plot.stability import Line
@@ -268,3 +272,38 @@ def _fail_if_unstable(found: Sequence[Stability]) -> None:
     ]
     if lines:
         raise RunError("\n".join(lines))
+
+
+@app.command("packing", rich_help_panel=MORE)
+def packing(
+    cases: Cases,
+    output: Annotated[Path, PICTURE] = Path("packing.png"),
+    title: PictureTitle = None,
+    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
+    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
+    changes: Settings = None,
+) -> None:
+    """Draw one side of the packing of each case, or one brick (PNG)."""
+    from dembound.disks.scene import build
+    from dembound.plot.packing import plot_brick, plot_patterns
+
+    loaded = [load_disks(path, changes) for path in cases]
+    if brick:
+        shown = build(loaded[0]).ground.brick
+        figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
+    else:
+        scenes = {case.name: build(case) for case in loaded}
+        figure = plot_patterns(
+            {
+                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
+                for name, scene in scenes.items()
+            }
+        )
+    leave(figure, output, title)
+
+
+def _edge_of(scene: DiskScene, side: str) -> Edge:
+    """A side of the scene; periodic sides have no particles."""
+    if side not in scene.edges:
+        raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
+    return scene.edges[side]
