@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.gauge.baseline import Treatment
-from dembound.gauge.filters import Filters
+from dembound.gauge.baseline import Filters, Treatment
 from dembound.gauge.gauge_io import Gauge, read_gauge
 from dembound.gauge.reading.signal import Reading
 

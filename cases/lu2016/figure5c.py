@@ -12,7 +12,7 @@ from pathlib import Path
 from records import MILLI, markdown
 
 from dembound.exact.dispersion import Lattice, cells_per_wavelength
-from dembound.plot.dispersion import plot_dispersion
+from dembound.plot.reflection import plot_dispersion
 from dembound.plot.style import save
 
 HORIZON, TIME_STEP, WAVE_SPEED = 0.02, 1e-6, 2763.0

@@ -19,7 +19,7 @@ from dembound.methods.rod import Rod
 from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.studies.dispersion import measure
-from dembound.studies.noise import short_run
+from dembound.studies.stability import short_run
 
 METHODS: dict[str, dict[str, Any]] = {
     "finite_difference": {"type": "finite_difference"},

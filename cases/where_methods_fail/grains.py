@@ -12,7 +12,7 @@ from dembound.kernels.elastic import contact_forces
 from dembound.kinds import kind_of
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
-from dembound.studies.noise import short_run
+from dembound.studies.stability import short_run
 
 DIAMETER = 2.0 * RADIUS
 

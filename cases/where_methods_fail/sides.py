@@ -10,7 +10,7 @@ from dembound.kinds import kind_of
 from dembound.motion.simulation import Simulation
 from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
-from dembound.studies.noise import short_run
+from dembound.studies.stability import short_run
 
 DIAMETER = 2.0 * RADIUS
 ALL = ("left", "right", "bottom", "top")

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion, axis_of_motion
-from dembound.boundaries.signals import Waves
-from dembound.boundaries.support import SupportBuilder
+from dembound.boundaries.support import SupportBuilder, Waves
 from dembound.table import Box, Table, quantity
 
 

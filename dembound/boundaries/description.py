@@ -11,20 +11,8 @@ FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 
 IN_WORDS = {
     *("type", "layer", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
-    *(
-        "beta_p",
-        "beta_s",
-        "matched_p",
-        "matched_s",
-        "half_mass",
-        "rock_p",
-        "rock_s",
-        "alpha_n",
-        "alpha_s",
-        "shear_modulus",
-        "distance_min",
-        "distance_max",
-    ),
+    *("beta_p", "beta_s", "matched_p", "matched_s", "half_mass", "rock_p", "rock_s"),
+    *("alpha_n", "alpha_s", "shear_modulus", "distance_min", "distance_max"),
 }
 """Keys of a side that other texts print."""
 

@@ -2,25 +2,17 @@
 
 from typing import ClassVar, Literal
 
-from dembound.boundaries.platen import Holding
+from dembound.boundaries.platen import Wall
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.table import quantity
 
 
-class Fixed(Holding):
+class Fixed(Wall):
     """A rigid wall: its particles neither move nor turn; reflected velocities have the opposite sign."""
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True
 
     type: Literal["fixed"]
-
-    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
-
-    @property
-    def is_artificial(self) -> bool:
-        """The value of the key ``artificial``."""
-        return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
         """All three components."""

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 from dembound.boundaries.boundary import Boundary, Drivable
 from dembound.boundaries.edge import OPPOSITE, SIDES
 from dembound.boundaries.free import Free
-from dembound.boundaries.intact import Keeping
+from dembound.boundaries.platen import Keeping
 
 
 class Outside(Keeping, Drivable):

@@ -1,4 +1,7 @@
-"""Sides that hold their particles, all of them or those within a range: walls, grips, platens and jaws of tests."""
+"""Sides that hold particles, all or those within a range, as walls and jaws do, and zones in which no bond breaks.
+
+In such a zone beside a side forces at rest always have ground to act on.
+"""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, Self
@@ -7,9 +10,34 @@ from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
-from dembound.boundaries.intact import Keeping
 from dembound.places import is_in_range
 from dembound.table import Box, quantity
+
+INTACT = 2
+"""Disks from a side, counted by bonds, whose bonds do not break by default."""
+
+MOST_INTACT = 1000
+"""Largest number of such disks: more than half of any body that can be computed."""
+
+
+class Keeping(Boundary):
+    """A side with a zone in which bonds do not break."""
+
+    intact: int | None = quantity(
+        None,
+        unit="1",
+        means="count",
+        help="disks from the side, counted by bonds, whose bonds do not break; absent: "
+        f"{INTACT} where forces of the static stage act on a side that stands for ground beyond, else 0",
+        ge=0,
+        le=MOST_INTACT,
+    )
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """A zone of a bar."""
+        yield from super().problems(side, tables)
+        if "bar" in tables and self.intact is not None:
+            yield f"boundary.{side}.intact: is for sides of disks"
 
 
 class Holding(Keeping):
@@ -54,6 +82,17 @@ class Holding(Keeping):
         along = edge.positions[:, 1 - edge.axis]
         low, high = self.within
         return edge.only(is_in_range((low, high), along, edge.length), high - low)
+
+
+class Wall(Holding):
+    """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
+
+    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
+
+    @property
+    def is_artificial(self) -> bool:
+        """The value of the key ``artificial``."""
+        return self.artificial
 
 
 def beside_disks(place: str, side: str, table: Boundary | None, tables: Mapping[str, Any]) -> Iterator[str]:

@@ -2,24 +2,16 @@
 
 from typing import ClassVar, Literal
 
-from dembound.boundaries.platen import Holding
+from dembound.boundaries.platen import Wall
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.table import quantity
 
 
-class Roller(Holding):
+class Roller(Wall):
     """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
 
     for_static: ClassVar[bool] = True
 
     type: Literal["roller"]
-
-    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
-
-    @property
-    def is_artificial(self) -> bool:
-        """The value of the key ``artificial``."""
-        return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
         """The motion along the normal."""

@@ -1,12 +1,55 @@
-"""The support table: forces from outside on the body, one row per supported degree of freedom."""
+"""The support table: forces from outside on the body, one row per supported degree of freedom, and their signals.
 
-from collections.abc import Mapping
+Signals are time functions of the drives of the table, and of waves that enter through a side.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
 from dembound.boundaries.edge import BoundaryMedium, Edge, normal_axis
-from dembound.boundaries.signals import Incident, OneOf, Signal, Signals, Waves
+
+Signal = Callable[[np.ndarray], np.ndarray]
+"""A time function: times (k,) in s -> values (k,)."""
+
+
+class Signals(Protocol):
+    """Signals whose values are computed together."""
+
+    @property
+    def count(self) -> int:
+        """Number q of the signals."""
+
+    def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        """Values (k, q) at times (k,) s of steps; velocities for ties are taken half a step (s) earlier."""
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of several signals."""
+
+    signals: Signals
+    number: int
+
+    def __call__(self, times: np.ndarray, half_step: float = 0.0) -> np.ndarray:
+        """Values (k,) of the signal at times (k,) s of steps, with half their length, s."""
+        return self.signals(times, half_step)[:, self.number]
+
+
+class Incident(Protocol):
+    """A wave that may enter through a side."""
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """Particle velocity, m/s, at the times t, s; same shape as t."""
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """Particle displacement, m, at the times t, s; same shape as t."""
+
+
+Waves = Mapping[str, Incident]
+"""The waves of a case by name."""
 
 
 @dataclass(frozen=True)
@@ -112,6 +155,14 @@ __all__ = [
 ]
 
 
+KINDS: Mapping[str, type[np.generic]] = {
+    **dict.fromkeys(("side", "call", "node", "component", "signal"), np.int64),
+    **dict.fromkeys(("damping", "follow", "stiffness", "drive"), np.float64),
+    **dict.fromkeys(("prescribed", "incident"), np.bool_),
+}
+"""Columns of rows as they are added, and their types."""
+
+
 @dataclass
 class SupportBuilder:
     """Collects the rows of all sides and merges them into one table.
@@ -150,20 +201,17 @@ class SupportBuilder:
         """
         if component in self.held or len(nodes) == 0:
             return
-        index = -1
         if incident is not None:
             signal, drive = incident, 2.0 * damping
-        if signal is not None:
-            index = self._number_of_signal(signal)
         self._append(
             nodes,
-            component=component,
+            component,
+            -1 if signal is None else self._number_of_signal(signal),
+            drive,
             damping=damping,
             follow=follow,
             stiffness=stiffness,
             prescribed=prescribed,
-            drive=drive,
-            signal=index,
             incident=incident is not None,
         )
 
@@ -182,7 +230,7 @@ class SupportBuilder:
             for each in sorted(set(component.tolist()) - set(self.held)):
                 chosen = np.flatnonzero((component == each) & np.isin(nodes, own))
                 if len(chosen):
-                    self._append(nodes[chosen], component=each, drive=1.0, signal=first + chosen)
+                    self._append(nodes[chosen], each, first + chosen, 1.0)
         self.side = present
 
     def add_power(self, side: str, power: Signal) -> None:
@@ -200,32 +248,17 @@ class SupportBuilder:
         component: int,
         signal: int | np.ndarray,
         drive: float | np.ndarray,
-        damping: float | np.ndarray = 0.0,
-        follow: float | np.ndarray = 0.0,
-        stiffness: float | np.ndarray = 0.0,
-        prescribed: bool = False,
-        incident: bool = False,
+        **others: float | np.ndarray,
     ) -> None:
-        """Append one row per node (k,); together they are one call."""
-        columns: dict[str, float | np.ndarray] = {
-            "node": nodes,
-            "component": component,
-            "damping": damping,
-            "follow": follow,
-            "stiffness": stiffness,
-            "prescribed": prescribed,
-            "drive": drive,
-            "signal": signal,
-            "incident": incident,
-            "side": self._number_of_side(),
-            "call": len(self._rows),
-        }
+        """Append one row per node (k,), zero in columns that are not given; together they are one call."""
+        given = {"node": nodes, "component": component, "signal": signal, "drive": drive, **others}
+        columns = dict.fromkeys(KINDS, 0.0) | given | {"side": self._number_of_side(), "call": len(self._rows)}
         self._rows.append({name: np.broadcast_to(value, np.shape(nodes)) for name, value in columns.items()})
 
     @property
     def nodes(self) -> np.ndarray:
         """The nodes (k,) of all rows added so far, ascending."""
-        return np.unique(self._column("node", np.int64))
+        return np.unique(self._column("node"))
 
     def _number_of_side(self) -> int:
         """The present side's index, −1 for loads."""
@@ -239,49 +272,37 @@ class SupportBuilder:
         Dampings, stiffnesses and drives add. A prescribed row replaces all others. Of two prescribed rows the moving
         one is kept, of two moving ones the first, and of two at rest the row along the normal of its side.
         """
-        node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
-        damping, follow, stiffness, drive = (
-            self._column(name, np.float64) for name in ("damping", "follow", "stiffness", "drive")
-        )
-        prescribed = self._column("prescribed", np.bool_)
-        unique, row_of = np.unique(3 * node + component, return_inverse=True)
-        side = self._column("side", np.int64)
-        kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0, self._is_along_normal(side, component))
-        driven = kept & (signal >= 0)
+        columns = {name: self._column(name) for name in KINDS}
+        component, signal, prescribed = (columns[name] for name in ("component", "signal", "prescribed"))
+        unique, row_of = np.unique(3 * columns["node"] + component, return_inverse=True)
+        along_normal = self._is_along_normal(columns["side"], component)
+        kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0, along_normal)
+        driven, of_sides = kept & (signal >= 0), kept & (columns["side"] >= 0)
+        added = {
+            name: np.bincount(row_of, weights=kept * columns[name], minlength=len(unique))
+            for name in ("damping", "follow", "stiffness")
+        }
+        shares = {name: values[of_sides] for name, values in columns.items()}
         return Supports(
             node=unique // 3,
             component=unique % 3,
-            damping=np.bincount(row_of, weights=kept * damping, minlength=len(unique)),
-            follow=np.bincount(row_of, weights=kept * follow, minlength=len(unique)),
-            stiffness=np.bincount(row_of, weights=kept * stiffness, minlength=len(unique)),
+            **added,
             prescribed=np.bincount(row_of, weights=prescribed, minlength=len(unique)) > 0,
             drive_row=row_of[driven],
-            drive=drive[driven],
+            drive=columns["drive"][driven],
             drive_signal=signal[driven],
             signals=tuple(self._signals),
-            shares=self._shares(np.flatnonzero(kept & (side >= 0))),
+            shares=Shares(**shares, sides=tuple(self._sides), power=dict(self._power)),
         )
-
-    def _shares(self, kept: np.ndarray) -> Shares:
-        """Shares of the rows that sides added and that are kept (a,)."""
-        columns = {
-            name: self._column(name, kind)[kept]
-            for kind, names in (
-                (np.int64, ("side", "call", "node", "component", "signal")),
-                (np.float64, ("damping", "follow", "stiffness", "drive")),
-                (np.bool_, ("prescribed", "incident")),
-            )
-            for name in names
-        }
-        return Shares(**columns, sides=tuple(self._sides), power=dict(self._power))
 
     def _is_along_normal(self, side: np.ndarray, component: np.ndarray) -> np.ndarray:
         """Whether the component of each row is along its side's normal; all (a,)."""
         axes = np.array([normal_axis(name) for name in self._sides] + [-1])  # the last one is that of index −1
         return axes[side] == component
 
-    def _column(self, name: str, kind: type[np.generic]) -> np.ndarray:
+    def _column(self, name: str) -> np.ndarray:
         """One column of all rows added so far."""
+        kind = KINDS[name]
         return np.concatenate([np.zeros(0, kind), *(rows[name] for rows in self._rows)]).astype(kind)
 
 

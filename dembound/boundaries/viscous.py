@@ -8,9 +8,8 @@ from pydantic import Field, model_validator
 
 from dembound.boundaries.boundary import Boundary, Driven
 from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion
-from dembound.boundaries.intact import Keeping
-from dembound.boundaries.signals import Waves
-from dembound.boundaries.support import SupportBuilder
+from dembound.boundaries.platen import Keeping
+from dembound.boundaries.support import SupportBuilder, Waves
 from dembound.table import Table, quantity
 
 

@@ -3,22 +3,18 @@
 Each command imports what it calls when it is called, so that help and completion appear at once.
 """
 
+# ruff: noqa: F401  # modules are imported as they add their commands to the app
 from dembound.cli import (
     advise,
     boundary,
     calibration,
     cases,
     chart,
-    estimate,
     exact,
     gauge,
-    hopkinson,
-    laboratory,
-    library,
     material,
     results,
     showing,
-    stability,
     starting,
     sweep,
     wave,
@@ -26,28 +22,4 @@ from dembound.cli import (
 from dembound.cli.app import app
 from dembound.cli.entry import main
 
-__all__ = [
-    "advise",
-    "app",
-    "boundary",
-    "calibration",
-    "cases",
-    "chart",
-    "dispersion",
-    "estimate",
-    "exact",
-    "gauge",
-    "hopkinson",
-    "laboratory",
-    "library",
-    "main",
-    "material",
-    "packing",
-    "results",
-    "showing",
-    "signals",
-    "stability",
-    "starting",
-    "sweep",
-    "wave",
-]
+__all__ = ["app", "main"]

@@ -1,4 +1,4 @@
-"""The command advise, and the option --error of run: the cheapest choice that is accurate enough."""
+"""The commands advise and estimate, and the option --error of run: errors, and the cheapest choice that keeps them."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from dembound.cli.app import Cases, Settings, Threads, app, load_case, prepare_computing, text_for
-from dembound.cli.console import out
-from dembound.errors import CaseError, NotAccurateError
+from dembound.cli.app import MORE, Cases, Settings, Threads, app, load_case, prepare_computing, text_for
+from dembound.cli.console import err, out, print_lines
+from dembound.cli.results import results_file
+from dembound.errors import CaseError, DemboundError, NotAccurateError, RecordError
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
+    from dembound.accuracy.budget import Budget
     from dembound.accuracy.proposal import Advice, Proposal
     from dembound.casefile import Case
-
 
 LOWERED = {
     "sides": 'wider ground, or sides of type = "outside"',
@@ -98,8 +99,7 @@ def advise_cases(
     Only small scenes with larger disks are run; see docs/tasks/trust_a_result.md.
     """
     from dembound.accuracy.advise import BOUNDS, advise
-    from dembound.cli.advice_table import Table
-    from dembound.cli.progress import watched
+    from dembound.cli.progress import Table, watched
 
     bound = bound_of(error)
     targets = [] if bound is None else [path.with_name(f"{name_within(path.stem, bound)}.toml") for path in cases]
@@ -113,9 +113,9 @@ def advise_cases(
         case = load_case(path, changes)
         with watched(case.name, partial(Table, bounds)) as table:
             found = advise(case, bounds, of, kept, seeds, longest, table)
-        _print(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
+        print_lines(f"advice took {with_unit(found.cpu_seconds, 's', 2)} of CPU time")
         if bound is None:
-            _print(f"write one: dembound advise {path} --error 3%")
+            print_lines(f"write one: dembound advise {path} --error 3%")
         elif not found.best[bound].holds(bound):
             missed.append(_missed(case, found, bound))
         elif found.best[bound].choice.changes:
@@ -164,8 +164,8 @@ def chosen(
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
-    for line in [*_lines(best), *(best.choice.toml or ["the case as it is"])]:
-        out.print(f"{case.name}: {line}", markup=False, soft_wrap=True)
+    said = [_line(best), *(best.choice.toml or ["the case as it is"])]
+    print_lines(*(f"{case.name}: {line}" for line in said))
     return best.case
 
 
@@ -174,27 +174,22 @@ def _kept(keep: Sequence[str] | None, changes: Sequence[str] | None) -> list[str
     return [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
 
 
-def _print(line: str) -> None:
-    """Print a line."""
-    out.print(line, markup=False, soft_wrap=True)
-
-
-def _lines(best: Proposal) -> list[str]:
+def _line(best: Proposal) -> str:
     """The choice in words, with its error and cost."""
     from dembound.results.histories import split_in_words
 
     worst = best.budget.worst()
-    return [
+    return (
         f"{best.choice.name}; predicted error {worst.share.expected}, at most {worst.share.most} "
         f"({split_in_words(worst.by)}), steps take about {with_unit(best.cost, 's', 2)}"
-    ]
+    )
 
 
 def _missed(case: Case, found: Advice, bound: float) -> str:
     """A message that no choice keeps a bound, with the best one."""
     best = found.best[bound]
     worst = best.budget.worst()
-    said = [f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_lines(best)[0]}"]
+    said = [f"{case.name}: no choice keeps {percent(bound, 3)}; the best of {found.tried} is: {_line(best)}"]
     unknown = [cause for cause in best.budget.causes.unknown if cause.counts(best.budget.of)]
     if worst.share.at_least:  # no choice with this cause would do
         said += [f"not estimated, so that no bound is kept: {each.name}, {each.words}" for each in unknown]
@@ -222,6 +217,69 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
         raise RuntimeError(f"{target}: the text is not that of the choice")
     plan(again)
     write_text(target, text)
-    for line in choice.toml:
-        out.print(f"  {line}", markup=False, soft_wrap=True)
-    out.print(f"wrote {target}", markup=False, soft_wrap=True)
+    print_lines(*(f"  {line}" for line in choice.toml), f"wrote {target}")
+
+
+Repeat = Annotated[
+    bool,
+    typer.Option(
+        "--repeat", help="Repeat the run with 0.98 of its time step, to see how much of the cracks is chance."
+    ),
+]
+
+
+@app.command("estimate", rich_help_panel=MORE)
+def estimate(
+    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
+    repeat: Repeat = False,
+    threads: Threads = None,
+) -> None:
+    """Estimate the errors of runs by sides, grid and time step.
+
+    Writes estimate.h5 and the entry error_estimate of summary.json; see docs/tasks/trust_a_result.md.
+    """
+    from dembound.accuracy.estimate import estimate_results
+    from dembound.cli.progress import watched
+    from dembound.results.folder import with_name
+
+    prepare_computing(threads)
+    problems: list[str] = []
+    failure: type[CaseError] = RecordError  # if all are errors of files
+    for path in results:
+        try:
+            folder = with_name(results_file(path)).parent
+            with watched(folder.name) as watching:
+                found = estimate_results(folder, repeat, watching)
+            _show(folder, found)
+        except CaseError as error:
+            problems += [line for line in str(error).splitlines() if line not in problems]
+            failure = failure if isinstance(error, RecordError) else CaseError
+    if problems:
+        raise failure(problems)
+
+
+def print_estimate(folder: Path) -> None:
+    """Print the error estimate of a completed run, or why there is none."""
+    from dembound.accuracy.estimate import estimate_results
+    from dembound.cli.progress import watched
+
+    try:
+        with watched(folder.name) as watching:
+            found = estimate_results(folder, watch=watching)
+        _show(folder, found)
+    except DemboundError as error:
+        err.print(f"{folder.name}: errors are not estimated: {error}")
+
+
+def _show(folder: Path, found: Budget) -> None:
+    """Print an estimate, and draw its band into the run's picture of the histories, if there is one."""
+    from dembound.accuracy.table import lines_of, next_step
+    from dembound.plot.histories import plot_histories
+    from dembound.plot.style import save
+    from dembound.running.recorded import file_of_record
+
+    out.print(f"{folder.name}: errors, estimated in {found.cpu_seconds:.2g} s of CPU time")
+    print_lines(*lines_of(found), next_step(found, folder, file_of_record(folder / "run.h5")))
+    picture = folder / "histories.png"
+    if picture.is_file():
+        save(plot_histories([folder / "run.h5"]), picture)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -14,9 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from dembound.cli.console import err, out
+from dembound.cli.console import ending_with, out
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -31,16 +29,6 @@ EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
 
 OPTIONS = "Options: --version; -h, --help; --install-completion, --show-completion: for the current shell."
 """In the help below the commands."""
-
-
-@contextmanager
-def _one_line_at_signals() -> Iterator[None]:
-    """End with one line and the exit code of the signal."""
-    try:
-        yield
-    except KeyboardInterrupt as stop:
-        err.print("dembound: stopped")
-        raise typer.Exit(exit_code_of(stop)) from None
 
 
 MORE = "More"
@@ -80,12 +68,12 @@ class _Commands(TyperGroup):
 
     def make_context(self, *arguments: Any, **more: Any) -> Any:
         """Read the options."""
-        with _one_line_at_signals():
+        with ending_with("dembound: stopped"):
             return super().make_context(*arguments, **more)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that was given."""
-        with _one_line_at_signals():
+        with ending_with("dembound: stopped"):
             return super().invoke(ctx)
 
 
@@ -138,13 +126,18 @@ def writable(path: Path | None) -> Path | None:
     return path
 
 
-def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
-    """A picture to write, if its folder exists. Raises CaseError if its name does not end in ``.png``."""
-    if path is not None and path.suffix.lower() != ".png":
-        raise CaseError([f"{param.opts[0]}: is {path}, must end in .png"])
-    return writable(path)
+def ending_in(*endings: str) -> Callable[[typer.CallbackParam, Path | None], Path | None]:
+    """A check of a file to write, whose folder must exist; raises CaseError if its name has none of these endings."""
+
+    def check(param: typer.CallbackParam, path: Path | None) -> Path | None:
+        if path is not None and path.suffix.lower() not in endings:
+            raise CaseError([f"{param.opts[0]}: is {path}, must end in {endings[0]}"])
+        return writable(path)
+
+    return check
 
 
+png = ending_in(".png")
 PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
 PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
 

@@ -20,7 +20,6 @@ from dembound.machine import one_thread_for_matrices
 from dembound.words import percent
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.figure import Figure
 
     from dembound.disks.reflection import Arrival, Measured, Reflections
@@ -91,7 +90,6 @@ def boundary(
         measure_side,
         measured_sides,
     )
-    from dembound.plot.reflection import plot_reflection
 
     prepare_computing(None)
     if types and quick:
@@ -100,35 +98,34 @@ def boundary(
     chosen = [side.value for side in sides] if sides else measured_sides(loaded)
     nowhere: tuple[str | None, ...] = (None,)
     parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
+    given, hertz = sorted(set(angles or ())), sorted(set(frequencies or ()))
     for side, layer in parts:
-        where = side if layer is None else f"{side}, in {layer}"
+        report = _report(side if layer is None else f"{side}, in {layer}")
         if types:
-            asked = sorted(set(angles)) if angles else COMPARED
-            of_types = compare_types(
-                loaded, side, [_table(text) for text in types], asked, frequencies or (), _report(where), layer
-            )
+            tables = [_table(text) for text in types]
+            found = compare_types(loaded, side, tables, given or COMPARED, frequencies or (), report, layer)
             words = f"Energy that types of the {side} side of {loaded.name} send back"
-            figure = _compared(*of_types, words if layer is None else f"{words} in {layer}")
+            figure = _compared(*found, words if layer is None else f"{words} in {layer}")
         else:
-            found = measure_side(
-                loaded,
-                side,
-                sorted(set(angles)) if angles else ANGLES,
-                sorted(set(frequencies)) if frequencies else FREQUENCIES,
-                report=_report(where),
-                quick=quick,
-                layer=layer,
+            measured = measure_side(
+                loaded, side, given or ANGLES, hertz or FREQUENCIES, report=report, quick=quick, layer=layer
             )
-            out.print(_overview(found, f"{loaded.name}: {where}, {found.type}"))
-            for line in _sentences(found):
-                out.print(line)
-            words = f"Energy that the {side} side ({found.type}) of {loaded.name} sends back"
-            words += "" if layer is None else f" in {layer}"
-            figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
-        ending = f"_{side}" if layer is None else f"_{side}_{layer}"
-        picture = output if len(parts) == 1 else output.with_stem(f"{output.stem}{ending}")
-        lines = table if table is None or len(parts) == 1 else table.with_stem(f"{table.stem}{ending}")
-        leave(figure, picture, title, lines)
+            figure = _measured(measured, loaded.name, side, layer)
+        ending = "" if len(parts) == 1 else f"_{side}" if layer is None else f"_{side}_{layer}"
+        picture, lines = (path and path.with_stem(f"{path.stem}{ending}") for path in (output, table))
+        leave(figure, picture or output, title, lines)
+
+
+def _measured(found: Measured, name: str, side: str, layer: str | None) -> Figure:
+    """Print what a side of the case of that name, or the part of it beside a layer, returns, and draw it."""
+    from dembound.plot.reflection import plot_reflection
+
+    out.print(_overview(found, f"{name}: {side if layer is None else f'{side}, in {layer}'}, {found.type}"))
+    for line in _sentences(found):
+        out.print(line)
+    words = f"Energy that the {side} side ({found.type}) of {name} sends back"
+    words += "" if layer is None else f" in {layer}"
+    return plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
 
 
 def _table(text: str) -> dict[str, Any]:
@@ -244,12 +241,8 @@ def _curves(found: Measured) -> list[Curves]:
         beside["in all, matched β"] = found.matched
     if found.continuum is not None and len(found.continuum[1].angles) == len(found.found.angles):
         beside["in all, an outside"] = found.continuum[1]
-    return [
-        Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], _totals(beside, kind))
-        for kind in found.found.kinds
-    ]
-
-
-def _totals(beside: dict[str, Reflections], kind: str) -> dict[str, np.ndarray]:
-    """Total reflected energies of waves of one type."""
-    return {name: each.total(kind) for name, each in beside.items() if kind in each.kinds}  # type: ignore[arg-type]
+    curves = []
+    for kind in found.found.kinds:
+        totals = {name: each.total(kind) for name, each in beside.items() if kind in each.kinds}
+        curves.append(Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], totals))
+    return curves

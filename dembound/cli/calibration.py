@@ -75,7 +75,7 @@ def calibrate_sides(
     """
     from dembound.casefile.edit import edited
     from dembound.files import write_text
-    from dembound.studies.all_sides import calibrate_all, changes_of
+    from dembound.studies.all_sides import calibrate_all, changes_of, summary_of
     from dembound.studies.calibration import calibrate
 
     _one_or_all(boundary, every, wave)
@@ -87,14 +87,16 @@ def calibrate_sides(
     text = text_for(target, case, loaded, changes)
     _require_no_other(target, text, _factors(loaded, boundary, wave))
     if boundary is None:
-        found = calibrate_all(loaded, how, report=_print_pass_of_side)
+        found = calibrate_all(loaded, how, report=lambda each: _print_pass(each, f"{each.side}, "))
         _print_table(found)
-        _leave_all(found, folder)
+        records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
+        _leave(found, summary_of(found), folder, records)
     else:
         one = calibrate(loaded, boundary.value, how, motion=wave, report=_print_pass)
         _print_result(one)
         found = [one]
-        _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
+        folder = folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}")
+        _leave(found, one.summary(), folder, [folder / "calibration.h5"])
     write_text(target, edited(text, changes_of(found)))
     out.print(f"wrote {target}")
 
@@ -122,12 +124,9 @@ def _require_no_other(target: Path, text: str, factors: Sequence[str]) -> None:
     except (CaseError, UnicodeDecodeError):
         replaced = False
     if not replaced:
-        raise CaseError(
-            [
-                f"{target}: exists already and differs from the case by more than {', '.join(factors)}; calibrate that "
-                "file to change these in it, or give another --calibrated FILE or --name"
-            ]
-        )
+        said = f"exists already and differs from the case by more than {', '.join(factors)}"
+        advice = "calibrate that file to change these in it, or give another --calibrated FILE or --name"
+        raise CaseError([f"{target}: {said}; {advice}"])
 
 
 def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> None:
@@ -139,38 +138,20 @@ def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> No
         raise CaseError([f"{option}: is for one side, not allowed together with --all" for option in both])
 
 
-def _leave(found: Calibration, folder: Path) -> None:
-    """Write the results of a calibration, printing each file."""
-    from dembound.files import make_folder
+def _leave(found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]) -> None:
+    """Write the passes of each calibration, a summary, and a picture of the passes; prints each file.
+
+    records : the file of each.
+    """
+    from dembound.files import make_folder, remove
+    from dembound.plot.stability import plot_convergence
+    from dembound.results.text_files import write_json
 
     make_folder(folder)
-    found.write(folder / "calibration.h5")
-    out.print(f"wrote {folder / 'calibration.h5'}")
-    _leave_summary([found], found.summary(), folder, [folder / "calibration.h5"])
-
-
-def _leave_all(found: Sequence[Calibration], folder: Path) -> None:
-    """Write the results of all calibrations of a case, the passes of each in its own folder; prints each file."""
-    from dembound.files import make_folder
-    from dembound.studies.all_sides import summary_of
-
-    make_folder(folder)
-    records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
     for each, record in zip(found, records, strict=True):
         make_folder(record.parent)
         each.write(record)
         out.print(f"wrote {record}")
-    _leave_summary(found, summary_of(found), folder, records)
-
-
-def _leave_summary(
-    found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
-) -> None:
-    """Write the summary and a picture of the passes; records : one of each."""
-    from dembound.files import remove
-    from dembound.plot.stability import plot_convergence
-    from dembound.results.text_files import write_json
-
     write_json(folder / "summary.json", summary)
     out.print(f"wrote {folder / 'summary.json'}")
     picture = folder / "convergence.png"
@@ -187,10 +168,6 @@ def _print_pass(found: Calibration, of: str = "") -> None:
         f"{of}pass {number:2d}: {FACTORS[found.factor]} = {found.beta[-1]:.6f}, "
         f"M_out = {found.outgoing[-1]:.6f} m/s, M_out/M_in = {found.ratio[-1]:.6f}"
     )
-
-
-def _print_pass_of_side(found: Calibration) -> None:
-    _print_pass(found, f"{found.side}, ")
 
 
 def _print_table(found: Sequence[Calibration]) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within
+from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within, print_estimate
 from dembound.cli.app import (
     MORE,
     Cases,
@@ -26,10 +26,8 @@ from dembound.cli.app import (
     load_case,
     prepare_computing,
 )
-from dembound.cli.console import compact_table, err, out
-from dembound.cli.estimate import print_estimate
+from dembound.cli.console import compact_table, ending_with, err, out
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
 from dembound.words import columns, in_one_unit
 
@@ -264,11 +262,11 @@ def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
 
     left = partial(left_of, folder.partial, f"dembound resume {folder.partial}")
     try:
-        with progress_of(folder.name) as progress:
+        with (
+            ending_with(lambda: f"{folder.name}: stopped; {'; '.join(left()) or 'the run had not begun'}"),
+            progress_of(folder.name) as progress,
+        ):
             return work(progress)
-    except KeyboardInterrupt as stop:
-        err.print(f"{folder.name}: stopped; {'; '.join(left()) or 'the run had not begun'}")
-        raise typer.Exit(exit_code_of(stop)) from None
     except (OSError, MemoryError) as error:
         for line in left():
             error.add_note(f"{folder.name}: {line}")

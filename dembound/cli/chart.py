@@ -11,9 +11,9 @@ import typer
 
 from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, few, load_case, prepare_computing
-from dembound.cli.console import err, out, print_rows
-from dembound.cli.options import names_of
-from dembound.interrupts import exit_code_of
+from dembound.cli.calibration import OneCase
+from dembound.cli.console import ending_with, err, out, print_rows
+from dembound.cli.options import leave, names_of
 
 if TYPE_CHECKING:
     from dembound.accuracy.chart.study import Charted, Line
@@ -34,7 +34,7 @@ ChartReference = Literal["exact", "extended", "finer", "finest"]
 
 @app.command("chart")
 def chart(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
+    case: OneCase,
     vary: Vary = None,
     reference: Annotated[
         ChartReference | None,
@@ -97,14 +97,10 @@ def chart(
         with progress_of(f"{loaded.name}, {run}") as progress:
             yield progress
 
-    try:
+    with ending_with(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues"):
         charted = make(loaded, options, folder, resume, shown)
-    except KeyboardInterrupt as stop:
-        err.print(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues")
-        raise typer.Exit(exit_code_of(stop)) from None
     _print(charted)
-    for path in _leave(charted, folder, title):
-        out.print(f"wrote {path}")
+    _leave(charted, folder, title)
 
 
 def _print(charted: Charted) -> None:
@@ -148,15 +144,12 @@ def _cells(charted: Charted, number: int, line: Line, has_rest: bool) -> list[st
     return [*(f"{number:.3g}" for number in (*shares, line.point.cost, line.wall, line.outcome.work)), mark]
 
 
-def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
-    """Write the results of a chart, yielding each file."""
+def _leave(charted: Charted, folder: Path, title: str | None) -> None:
+    """Write the results of a chart, printing each file."""
     from dembound.accuracy.chart.tables import write_results, write_table
     from dembound.plot.chart import plot_chart
-    from dembound.plot.style import save
 
-    write_results(charted, folder / "chart.h5")
-    yield folder / "chart.h5"
-    write_table(charted, folder / "chart.csv")
-    yield folder / "chart.csv"
-    save(plot_chart(folder / "chart.h5", title), folder / "chart.png")
-    yield folder / "chart.png"
+    for path, write in ((folder / "chart.h5", write_results), (folder / "chart.csv", write_table)):
+        write(charted, path)
+        out.print(f"wrote {path}")
+    leave(plot_chart(folder / "chart.h5", title), folder / "chart.png")

@@ -5,15 +5,18 @@ from __future__ import annotations
 import io
 import sys
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
+import typer
 from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
 from dembound.errors import HIDDEN, escaped, visible
+from dembound.interrupts import exit_code_of
 from dembound.words import columns
 
 INTERVAL = 10.0
@@ -45,6 +48,22 @@ out = PlainConsole()
 err = PlainConsole(stderr=True)
 
 
+def print_lines(*lines: str) -> None:
+    """Print lines that are not broken, also on a terminal."""
+    for line in lines:
+        out.print(line, soft_wrap=True)
+
+
+@contextmanager
+def ending_with(words: str | Callable[[], str]) -> Iterator[None]:
+    """Inside, a signal ends the command with its exit code, and with one line of these words, or of those then made."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        err.print(words if isinstance(words, str) else words())
+        raise typer.Exit(exit_code_of(stop)) from None
+
+
 def compact_table(*columns: Column | str, **looks: Any) -> Table:
     """A table without frame and with narrow gaps between its columns, so that it fits into 80 characters."""
     return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
@@ -61,8 +80,7 @@ def print_rows(title: str, rows: Sequence[Sequence[str]], left: int = 1) -> None
         lines = columns(
             [line for row in rows for line in _broken(row, max(len(row[0]) for row in rows) - excess)], left
         )
-    for line in (title, "", *lines):
-        out.print(line, soft_wrap=True)
+    print_lines(title, "", *lines)
 
 
 def _broken(row: Sequence[str], width: int) -> list[Sequence[str]]:

@@ -1,30 +1,209 @@
-"""The commands material and packing."""
+"""Commands about a material: tests of its samples, and what contacts and bonds make of it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from dembound.cli.app import MORE, PICTURE, Cases, Output, PictureTitle, Settings, Side, app, few, load_disks, text_for
+from dembound.cli.app import (
+    MORE,
+    Name,
+    Output,
+    Scheduler,
+    Settings,
+    app,
+    few,
+    load_disks,
+    require_one_place,
+    text_for,
+)
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import err, out, print_rows
-from dembound.cli.laboratory import LoadingOptions
+from dembound.cli.console import ending_with, err, out, print_lines, print_rows
 from dembound.cli.options import leave, with_tables
-from dembound.cli.sweep import FAILED, shown
+from dembound.cli.sweep import FAILED, cells_of, print_failed, shown
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
-from dembound.words import percent
+from dembound.studies.asked import Loading
+from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
-    from dembound.boundaries.edge import Edge
     from dembound.casefile.disks.model import DiskCase
-    from dembound.disks.scene import DiskScene
     from dembound.results.recording import TestName
     from dembound.studies.laboratory.sample import Sample
+    from dembound.studies.laboratory.study import Tested
+    from dembound.studies.laboratory.tables import Ratio
+    from dembound.studies.sweep.study import Options, Standing
+    from dembound.studies.sweep.tables import Statistic
+
+
+@dataclass(frozen=True)
+class LoadingOptions(Loading):
+    """Samples, how they are loaded, and where they run."""
+
+    processes: Annotated[
+        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
+    ] = None
+    scheduler: Scheduler = None
+
+    def sample(self, case: DiskCase, test: str) -> Sample:
+        """The sample of a test of the material of a case; raises CaseError as `sample_of`."""
+        from dembound.studies.laboratory.sample import sample_of
+
+        return sample_of(case, test, self)
+
+    def options(self, *, anew: bool = False) -> Options:
+        """Options of the sweep over seeds; raises CaseError for processes beside a scheduler."""
+        from dembound.studies.sweep.study import Options
+
+        require_one_place(self.scheduler, self.processes)
+        return Options(processes=self.processes, scheduler=self.scheduler, anew=anew)
+
+    @property
+    def given(self) -> Iterator[str]:
+        """Names of the options that differ from their defaults."""
+        for field in fields(self):
+            if getattr(self, field.name) != field.default:
+                yield f"--{field.name}"
+
+
+PRINTED = {
+    "strength": "strength",
+    "first_crack": "first crack",
+    "young": "E of the sample",
+    "poisson": "ν of the sample",
+    "young_plane_strain": "E, plane strain",
+    "poisson_plane_strain": "ν, plane strain",
+    "strain_at_peak": "strain at the peak",
+    "tension_cracks_at_peak": "broken in tension, at the peak",
+    "shear_cracks_at_peak": "broken in shear, at the peak",
+    "friction_angle": "friction angle φ",
+    "cohesion": "cohesion",
+    "uniaxial": "strength at no pressure, of the line",
+}
+"""Quantities that are printed, and their names there; all others are in the files."""
+
+
+@app.command("test")
+@with_tables
+def laboratory(
+    kind: Annotated[str, typer.Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
+    *,
+    seeds: Annotated[
+        int, typer.Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
+    ] = 4,
+    pressures: Annotated[
+        str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
+    ] = None,
+    shares: Annotated[
+        str, typer.Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")
+    ] = "0.1,0.5",
+    anew: Annotated[bool, typer.Option("--anew", help="Also repeat samples that are done.")] = False,
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+    loading: LoadingOptions,
+) -> None:
+    """Test samples of a material: E, ν, first crack, strength.
+
+    Only the tables packing and material of the case count; pressures at the sides give friction angle and cohesion.
+
+    Each sample is a case of its own, which is left with the results.
+
+    Complete samples are not repeated: the same command continues a test, and more seeds add samples to it.
+    """
+    from dembound.studies.laboratory.sample import ignored
+    from dembound.studies.laboratory.study import perform, specimens_of
+    from dembound.studies.laboratory.tables import ratios_of
+
+    options = loading.options(anew=anew)
+    between, sides = _numbers("--shares", shares), _numbers("--pressures", pressures) if pressures else None
+    loaded = load_disks(case, changes, name)
+    sample = loading.sample(loaded, kind)
+    if unused := ignored(loaded):
+        err.print(f"{loaded.name}: only [packing] and [material] count; not used: {', '.join(unused)}")
+    specimens = specimens_of(sample, seeds, sides)
+    err.print(f"{loaded.name}: {kind}, {sample.in_words}")
+    folder = output / f"{loaded.name}_{kind}"
+    with (
+        ending_with(f"{loaded.name}: stopped; the same command continues what is left"),
+        shown(loaded.name, "samples", lambda standing: _under_way(sample, folder, standing)) as report,
+    ):
+        found = perform(sample, specimens, options, folder, report, between)
+    ratios = list(ratios_of(found, output))
+    has_failed = _print(found, ratios)
+    _leave(found, ratios)
+    if has_failed:
+        raise typer.Exit(FAILED)
+
+
+def _numbers(option: str, text: str) -> list[float]:
+    """Numbers between commas; raises CaseError for anything else."""
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise CaseError([f"{option}: is {text}, must be numbers with commas between them"]) from None
+
+
+def _under_way(sample: Sample, folder: Path, standing: Standing) -> str:
+    """The strains between platens that the samples under way have come to; others are packed, compiled or at rest."""
+    from dembound.studies.sweep.perform import times_in
+
+    strains = [percent(sample.strain_at(time)) for time in sorted(times_in(folder).values())]
+    preparing = standing.under_way - len(strains)
+    words = [f"strain {', '.join(strains)}"] if strains else []
+    words += [f"{preparing} preparing"] if preparing > 0 else []
+    return f" ({'; '.join(words)})" if words else ""
+
+
+def _print(tested: Tested, ratios: Sequence[Ratio]) -> bool:
+    """Print failures, warnings, means and ratios; returns whether a run has failed."""
+    name = tested.sample.case.name
+    members = [each.member for each in tested.specimens]
+    failed = print_failed(name, members, tested.states, tested.warnings_of_runs, "samples")
+    for line in tested.warnings:
+        err.print(f"{name}: warning: {line}")
+    found = [each for each in tested.statistics if each.quantity in PRINTED]
+    if found:
+        print_rows(name, list(_rows(found)), left=2 if any(each.group for each in found) else 1)
+    for ratio in ratios:
+        out.print(f"{name}: compressive over tensile strength {ratio.value:.3g}, with {ratio.folder}")
+    return failed > 0
+
+
+def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
+    """A head, and a row for each quantity and pressure, with three digits; all digits are in the files."""
+    from dembound.studies.laboratory.study import UNITS
+
+    grouped = any(each.group for each in statistics)
+    yield *(("pressure",) if grouped else ()), "quantity", "n", "mean", "spread", "95 % ±", "unit"
+    for each in statistics:
+        group = (with_unit(each.group["pressure"], "Pa") if each.group else "all",) if grouped else ()
+        yield *group, PRINTED[each.quantity], *cells_of(each, UNITS.get(each.quantity, "1"))
+
+
+def _leave(tested: Tested, ratios: Sequence[Ratio]) -> None:
+    """Write tables, cases and pictures, printing each."""
+    from dembound.studies.laboratory.tables import write_tables
+
+    for path in write_tables(tested, ratios):
+        out.print(f"wrote {path}")
+    if not tested.done:
+        return
+    from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
+
+    title, first = f"{tested.sample.case.name}: {tested.sample.test}", tested.done[0]
+    leave(plot_curves(title, tested.curves), tested.folder / "curves.png")
+    leave(plot_sample(tested.record(first), tested.curves[first.member.name]), tested.folder / "sample.png")
+    if tested.envelopes:
+        points = [(each.pressure, tested.curves[each.member.name].strength) for each in tested.done]
+        line = {s.quantity: s.mean for s in tested.statistics if not s.group}
+        leave(plot_envelope(title, points, line["friction_angle"], line["cohesion"]), tested.folder / "envelope.png")
+
 
 FOUND = "# found by dembound material:"
 """Begin of the comments above the strengths that are written."""
@@ -47,17 +226,7 @@ def match_strengths(
     """
     from dembound.casefile.edit import commented, edited
     from dembound.files import write_text
-    from dembound.studies.laboratory.strengths import (
-        CLOSE,
-        Search,
-        excess_in_words,
-        in_words,
-        keys_of,
-        measure_in,
-        spread_of,
-        strength_in_words,
-        with_bonds,
-    )
+    from dembound.studies.laboratory import strengths
 
     wanted = cast("dict[TestName, float]", dict(targets))
     target = Path(f"{case.name}_strengths.toml")
@@ -71,27 +240,26 @@ def match_strengths(
 
     material, options = case.material, loading.options()
     cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    search, done = Search(wanted, cohesion, spread_of(material.pb_scatter)), []
-    try:
-        with shown(case.name, "samples") as report:
-            measure = measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
-            for trial in search.trials(measure):
-                done.append(trial)
-                for line in in_words(trial, wanted):
-                    out.print(f"{case.name}: {line}")
-    except KeyboardInterrupt as stop:
-        err.print(f"{case.name}: stopped; the same command continues what is left")
-        raise typer.Exit(exit_code_of(stop)) from None
+    search, done = strengths.Search(wanted, cohesion, strengths.spread_of(material.pb_scatter)), []
+    said = f"{case.name}: stopped; the same command continues what is left"
+    with ending_with(said), shown(case.name, "samples") as report:
+        measure = strengths.measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
+        for trial in search.trials(measure):
+            done.append(trial)
+            for line in strengths.in_words(trial, wanted):
+                out.print(f"{case.name}: {line}")
     best = search.best(done)
-    keys = keys_of(case, best.pb_ten, best.pb_coh)
-    tested = with_bonds(case, best.pb_ten, best.pb_coh)
-    said = [f"{FOUND} {strength_in_words(test, best)}; {loading.sample(tested, test).in_words}" for test in wanted]
+    keys = strengths.keys_of(case, best.pb_ten, best.pb_coh)
+    tested = strengths.with_bonds(case, best.pb_ten, best.pb_coh)
+    found = {test: strengths.strength_in_words(test, best) for test in wanted}
+    comments = [f"{FOUND} {words}; {loading.sample(tested, test).in_words}" for test, words in found.items()]
     text = edited(text_for(target, path, case, settings), keys)
-    write_text(target, commented(text, "material.pb_ten", said, FOUND))
+    write_text(target, commented(text, "material.pb_ten", comments, FOUND))
     out.print(f"wrote {target}")
-    if best.deviation(wanted) > CLOSE:
-        missed = ", ".join(f"{test} is {excess_in_words(test, best, wanted)}" for test in wanted)
-        err.print(f"{case.name}: no trial of {len(done)} is within {percent(CLOSE)}; written is the best one: {missed}")
+    if best.deviation(wanted) > strengths.CLOSE:
+        missed = ", ".join(f"{test} is {strengths.excess_in_words(test, best, wanted)}" for test in wanted)
+        said = f"no trial of {len(done)} is within {percent(strengths.CLOSE)}; written is the best one"
+        err.print(f"{case.name}: {said}: {missed}")
         raise typer.Exit(FAILED)
 
 
@@ -137,8 +305,7 @@ def material(
     scene = build(load_disks(case, changes))
     found = describe_materials(scene)
     if as_json:
-        for line in json.dumps(found, indent=2, allow_nan=False).splitlines():
-            out.print(line, soft_wrap=True)
+        print_lines(*json.dumps(found, indent=2, allow_nan=False).splitlines())
         return
     for each, own in zip(found, materials_of(scene), strict=True):
         if own.layer:
@@ -148,38 +315,3 @@ def material(
             out.print()
             print_rows(title, rows)
         out.print()
-
-
-@app.command("packing", rich_help_panel=MORE)
-def packing(
-    cases: Cases,
-    output: Annotated[Path, PICTURE] = Path("packing.png"),
-    title: PictureTitle = None,
-    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
-    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
-    changes: Settings = None,
-) -> None:
-    """Draw one side of the packing of each case, or one brick (PNG)."""
-    from dembound.disks.scene import build
-    from dembound.plot.packing import plot_brick, plot_patterns
-
-    loaded = [load_disks(path, changes) for path in cases]
-    if brick:
-        shown = build(loaded[0]).ground.brick
-        figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
-    else:
-        scenes = {case.name: build(case) for case in loaded}
-        figure = plot_patterns(
-            {
-                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
-                for name, scene in scenes.items()
-            }
-        )
-    leave(figure, output, title)
-
-
-def _edge_of(scene: DiskScene, side: str) -> Edge:
-    """A side of the scene; periodic sides have no particles."""
-    if side not in scene.edges:
-        raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
-    return scene.edges[side]

@@ -140,14 +140,36 @@ SceneField = Literal[
 class Plotted:
     """What a plot shows by its options; without options the histories of all monitors."""
 
-    quantity: Quantity | None
-    component: Component | None
-    monitor: list[str] | None
-    boundary: Side | None
-    energy: bool
-    field: SceneField | None
-    snapshot: int | None
-    table: Path | None
+    quantity: QuantityOfMonitors = None
+    component: ComponentOfMotion = None
+    monitor: Monitors = None
+    boundary: Annotated[
+        Side | None,
+        typer.Option(
+            help="Show this side's diameters and peak velocities instead, "
+            "with --quantity stress or displacement its mean."
+        ),
+    ] = None
+    energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False
+    field: Annotated[
+        SceneField | None,
+        typer.Option(
+            metavar="FIELD",
+            help=f"Show the scene of one run instead, coloured by this: {names_of(SceneField)}; forces: contacts as "
+            "lines; of a bar over place and time.",
+        ),
+    ] = None
+    snapshot: Annotated[
+        int | None,
+        typer.Option(
+            help="With --field: number of the snapshot, −1 the last; by default that of the largest values, "
+            "of a bar all."
+        ),
+    ] = None
+    table: Annotated[
+        Path | None,
+        typer.Option(help="Table of the lines drawn to write as well (CSV), in their units.", callback=writable),
+    ] = None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:
         """Options that exclude each other, for a number of results of a kind."""

@@ -1,25 +1,28 @@
-"""Progress of a run, estimate or advice on stderr: a bar on a terminal, else a line every ten seconds; and warnings."""
+"""Progress of a run, estimate or advice on stderr: a bar on a terminal, else a line every ten seconds; and warnings.
+
+The table of advice is printed as it becomes known.
+"""
 
 import math
+import textwrap
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-import typer
 from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 from rich.text import Text
 
-from dembound.accuracy.table import in_one_line
+from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.table import WIDTH, in_one_line, lines_of
 from dembound.accuracy.watch import Watch
 from dembound.cli.compiling import COMPILATION
-from dembound.cli.console import INTERVAL, err
+from dembound.cli.console import INTERVAL, ending_with, err, print_lines
 from dembound.formulas.cause import Cause
 from dembound.formulas.history import Motions
-from dembound.interrupts import exit_code_of
 from dembound.motion.trackers import Run
 from dembound.running import Progress
-from dembound.words import with_unit
+from dembound.words import percent, with_unit
 
 
 class Shown(Progress):
@@ -95,11 +98,8 @@ def watched(name: str, made: Callable[[str, Shown], Watching] = Watching) -> Ite
     """
     with progress_of(name) as shown:
         watching = made(name, shown)
-        try:
+        with ending_with(lambda: f"{name}: stopped; missing: {watching.missing}"):
             yield watching
-        except KeyboardInterrupt as stop:
-            err.print(f"{name}: stopped; missing: {watching.missing}")
-            raise typer.Exit(exit_code_of(stop)) from None
 
 
 class _Compiling(ProgressColumn):
@@ -205,3 +205,39 @@ class ProgressBar(Shown):
         speed = self.bar.tasks[0].speed
         rate = f"{speed * run.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
         self.bar.update(self.task, description=self.name, completed=run.state.step, total=steps, rate=rate)
+
+
+class Table(Watching):
+    """Shows what is computed, and prints errors of a case and the cheapest choice by bound, once known."""
+
+    def __init__(self, bounds: Sequence[float], name: str, shown: Shown) -> None:
+        super().__init__(name, shown)
+        self._left, self._before = sorted(bounds, reverse=True), ""
+
+    def given(self, proposal: Proposal) -> None:
+        """Print the errors of the case, and the head of the table of choices."""
+        self._print(
+            f"{self.name}: its steps take about {with_unit(proposal.cost, 's', 2)}",
+            *lines_of(proposal.budget),
+            "",
+            "   requested  predicted  at most      time   what changes",
+        )
+
+    def best(self, bound: float, best: Proposal) -> None:
+        """Print the choice for a bound."""
+        share = best.budget.worst().share
+        numbers = f"{share.expected:>9} {share.most:>8}  {with_unit(best.cost, 's', 2):>8}   "
+        words = best.choice.name if best.choice.changes else "nothing"
+        if not best.holds(bound):
+            words = f"no choice holds it, least error: {words if best.choice.changes else 'the case as it is'}"
+        self._before, words = words, "the same" if words == self._before != "nothing" else words
+        first = f"{percent(bound, 3):>12}  {numbers}"
+        self._left.remove(bound)
+        self._print(*textwrap.wrap(words, WIDTH, initial_indent=first, subsequent_indent=" " * 8))
+
+    def _print(self, *lines: str) -> None:
+        """Print lines of at most 80 characters."""
+        left = ", ".join(percent(each, 3) for each in self._left)
+        self.missing = f"the cheapest choices within {left}" if left else "nothing"
+        with self.shown.aside():
+            print_lines(*lines)

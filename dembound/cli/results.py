@@ -8,19 +8,9 @@ from typing import Annotated
 
 import typer
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, Side, app, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import out, print_rows
-from dembound.cli.options import (
-    CALIBRATIONS,
-    ComponentOfMotion,
-    Monitors,
-    Plotted,
-    Quantity,
-    QuantityOfMonitors,
-    SceneField,
-    leave,
-    names_of,
-)
+from dembound.cli.options import CALIBRATIONS, Plotted, Quantity, leave, names_of, with_tables
 from dembound.errors import CaseError, RecordError
 from dembound.words import in_one_unit
 
@@ -29,40 +19,13 @@ ROUNDING = 1e-6
 
 
 @app.command("plot")
+@with_tables
 def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, PICTURE] = Path("plot.png"),
     title: PictureTitle = None,
-    quantity: QuantityOfMonitors = None,
-    component: ComponentOfMotion = None,
-    monitor: Monitors = None,
-    boundary: Annotated[
-        Side | None,
-        typer.Option(
-            help="Show this side's diameters and peak velocities instead, "
-            "with --quantity stress or displacement its mean."
-        ),
-    ] = None,
-    energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
-    field: Annotated[
-        SceneField | None,
-        typer.Option(
-            metavar="FIELD",
-            help=f"Show the scene of one run instead, coloured by this: {names_of(SceneField)}; forces: contacts as "
-            "lines; of a bar over place and time.",
-        ),
-    ] = None,
-    snapshot: Annotated[
-        int | None,
-        typer.Option(
-            help="With --field: number of the snapshot, −1 the last; by default that of the largest values, "
-            "of a bar all."
-        ),
-    ] = None,
-    table: Annotated[
-        Path | None,
-        typer.Option(help="Table of the lines drawn to write as well (CSV), in their units.", callback=writable),
-    ] = None,
+    *,
+    asked: Plotted,
 ) -> None:
     """Draw histories of runs, or a field or the energies of one (PNG).
 
@@ -73,12 +36,11 @@ def plot(
     from dembound.results.reader import understood
 
     files = [results_file(path) for path in results]
-    asked = Plotted(quantity, component, monitor, boundary, energy, field, snapshot, table)
     kind = _common_kind(files)
     if problems := list(asked.problems(kind, len(files))):
         raise CaseError(problems)
     with understood(*files):
-        leave(asked.draw(files, kind), output, title, table)
+        leave(asked.draw(files, kind), output, title, asked.table)
 
 
 def _common_kind(files: Sequence[Path]) -> str:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, writable
+from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, ending_in, writable
 from dembound.cli.console import INTERVAL, err, out
-from dembound.cli.options import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors, SceneField, leave
+from dembound.cli.options import ComponentOfMotion, Monitors, QuantityOfMonitors, SceneField, leave, with_tables
 from dembound.cli.results import results_file
 from dembound.errors import CaseError
 
@@ -20,19 +21,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def _page(path: Path) -> Path:
-    """A page to write. Raises CaseError if its name does not end in ``.html``."""
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise CaseError([f"--output: is {path}, must end in .html"])
-    return writable(path) or path
-
-
 @app.command("report")
 def report(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=_page)] = Path(
-        "report.html"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=ending_in(".html", ".htm"))
+    ] = Path("report.html"),
 ) -> None:
     """Write an HTML page of runs: scenes, histories, spectra, energy.
 
@@ -46,7 +40,7 @@ def report(
 
 def _movie(path: Path) -> Path:
     """A movie to write, of a format that can be written here."""
-    from dembound.report.movie import require_movie
+    from dembound.report.pictures import require_movie
 
     require_movie(path)
     return (writable(path) if path.suffix else None) or path
@@ -80,7 +74,7 @@ def movie(
 
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """
-    from dembound.report.movie import movie_of, write_movie
+    from dembound.report.pictures import movie_of, write_movie
     from dembound.results.reader import understood
 
     file = results_file(results)
@@ -120,7 +114,48 @@ Shown = Literal["fourier", "transfer", "response", "section", "hodograph"]
 """What is shown of the monitors' signals."""
 
 
+@dataclass(frozen=True)
+class SignalsShown:
+    """The signals of monitors that are shown."""
+
+    quantity: QuantityOfMonitors = None
+    component: ComponentOfMotion = None
+    monitor: Monitors = None
+    reference: Annotated[
+        str | None, typer.Option(metavar="NAME", help="With --show transfer: monitor that is the input.")
+    ] = None
+
+    def problems(self, show: Shown) -> Iterator[str]:
+        """Options that have no effect on what is shown."""
+        unused = {
+            "--quantity": (self.quantity, "response", "a response spectrum is of the acceleration"),
+            "--component": (self.component, "hodograph", "a hodograph shows x and y"),
+        }
+        for option, (value, kind, why) in unused.items():
+            if value is not None and show == kind:
+                yield f"{option}: is not allowed with --show {kind}, {why}"
+        if self.reference is not None and show != "transfer":
+            yield "--reference: goes with --show transfer"
+        if self.quantity == "stress" and self.component is not None:
+            yield "--component: is of motions; the stress of a bar is that along it"
+
+    def draw(self, files: Sequence[Path], show: Shown) -> Figure:
+        """The picture."""
+        from dembound.plot.histories import plot_hodograph, plot_section
+        from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
+
+        names, of = self.monitor or None, self.quantity or "velocity"
+        if show == "response":
+            return plot_response(files, self.component, names)
+        if show == "hodograph":
+            return plot_hodograph(files, of, names)
+        if show == "transfer":
+            return plot_transfer(files, self.component, of, names, self.reference)
+        return (plot_section if show == "section" else plot_fourier)(files, self.component, of, names)
+
+
 @app.command("signals", rich_help_panel=MORE)
+@with_tables
 def signals(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     show: Annotated[
@@ -133,12 +168,8 @@ def signals(
     ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),
     title: PictureTitle = None,
-    quantity: QuantityOfMonitors = None,
-    component: ComponentOfMotion = None,
-    monitor: Monitors = None,
-    reference: Annotated[
-        str | None, typer.Option(metavar="NAME", help="With --show transfer: monitor that is the input.")
-    ] = None,
+    *,
+    of: SignalsShown,
 ) -> None:
     """Draw spectra, record sections or hodographs (PNG and CSV).
 
@@ -146,52 +177,8 @@ def signals(
     """
     from dembound.results.reader import understood
 
-    _require_fitting(show, quantity, component, reference)
+    if problems := list(of.problems(show)):
+        raise CaseError(problems)
     files = [results_file(path) for path in results]
     with understood(*files):
-        figure = _drawn(files, show, quantity, component, monitor, reference)
-        leave(figure, output, title, output.with_suffix(".csv"))
-
-
-def _require_fitting(
-    show: Shown, quantity: Quantity | None, component: Component | None, reference: str | None
-) -> None:
-    """Raise CaseError for options that have no effect on what is shown."""
-    unused = {
-        "--quantity": (quantity, "response", "a response spectrum is of the acceleration"),
-        "--component": (component, "hodograph", "a hodograph shows x and y"),
-    }
-    problems = [
-        f"{option}: is not allowed with --show {kind}, {why}"
-        for option, (value, kind, why) in unused.items()
-        if value is not None and show == kind
-    ]
-    if reference is not None and show != "transfer":
-        problems.append("--reference: goes with --show transfer")
-    if quantity == "stress" and component is not None:
-        problems.append("--component: is of motions; the stress of a bar is that along it")
-    if problems:
-        raise CaseError(problems)
-
-
-def _drawn(
-    files: Sequence[Path],
-    show: Shown,
-    quantity: Quantity | None,
-    component: Component | None,
-    monitor: list[str] | None,
-    reference: str | None,
-) -> Figure:
-    """The picture."""
-    from dembound.plot.histories import plot_hodograph, plot_section
-    from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
-
-    names, of = monitor or None, quantity or "velocity"
-    if show == "response":
-        return plot_response(files, component, names)
-    if show == "hodograph":
-        return plot_hodograph(files, of, names)
-    if show == "transfer":
-        return plot_transfer(files, component, of, names, reference)
-    draw = plot_section if show == "section" else plot_fourier
-    return draw(files, component, of, names)
+        leave(of.draw(files, show), output, title, output.with_suffix(".csv"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,8 +15,9 @@ if TYPE_CHECKING:
     from dembound.gauge.reading.signal import Reading
     from dembound.gauge.reading.units import Bridge
 
-FILE, BRIDGE, CLEANING = "Text files", "Strain gauges", "Baseline and filters"
-"""Panels of the help."""
+of_file = partial(typer.Option, rich_help_panel="Text files")
+_of_bridge = partial(typer.Option, rich_help_panel="Strain gauges")
+_cleaning = partial(typer.Option, rich_help_panel="Baseline and filters")
 
 
 @dataclass(frozen=True)
@@ -23,65 +25,35 @@ class SignalOptions:
     """How signals are read from text files, converted to strains or stresses, and cleaned."""
 
     time_column: Annotated[
-        str | None,
-        typer.Option(metavar="NAME|NUMBER", help="Column of the times; by default the first.", rich_help_panel=FILE),
+        str | None, of_file(metavar="NAME|NUMBER", help="Column of the times; by default the first.")
     ] = None
-    time_unit: Annotated[
-        str | None, typer.Option(help="s, ms, µs (us) or ns; by default the header's, or s.", rich_help_panel=FILE)
-    ] = None
+    time_unit: Annotated[str | None, of_file(help="s, ms, µs (us) or ns; by default the header's, or s.")] = None
     unit: Annotated[
-        str | None,
-        typer.Option(
-            help="Pa, kPa, MPa, GPa, V, mV, µV (uV), strain or µε (ue); by default the header's.", rich_help_panel=FILE
-        ),
+        str | None, of_file(help="Pa, kPa, MPa, GPa, V, mV, µV (uV), strain or µε (ue); by default the header's.")
     ] = None
-    scale: Annotated[
-        float,
-        typer.Option(
-            help="Factor that makes values Pa, positive in tension; -1 changes the sign.", rich_help_panel=FILE
-        ),
-    ] = 1.0
-    clipped: Annotated[
-        bool, typer.Option("--clipped", help="Accept a signal that looks clipped.", rich_help_panel=FILE)
-    ] = False
-    gauge_factor: Annotated[
-        float | None, typer.Option(help="Gauge factor k, which converts voltages to strains.", rich_help_panel=BRIDGE)
-    ] = None
+    scale: Annotated[float, of_file(help="Factor that makes values Pa, positive in tension; -1 changes the sign.")] = (
+        1.0
+    )
+    clipped: Annotated[bool, of_file("--clipped", help="Accept a signal that looks clipped.")] = False
+    gauge_factor: Annotated[float | None, _of_bridge(help="Gauge factor k, which converts voltages to strains.")] = None
     bridge: Annotated[
-        str,
-        typer.Option(
-            "--bridge",
-            help="quarter, half (two opposite gauges along the bar) or full (and two across).",
-            rich_help_panel=BRIDGE,
-        ),
+        str, _of_bridge("--bridge", help="quarter, half (two opposite gauges along the bar) or full (and two across).")
     ] = "quarter"
-    excitation: Annotated[
-        float | None, typer.Option(help="Voltage that supplies the bridge (V).", rich_help_panel=BRIDGE)
-    ] = None
-    gain: Annotated[float, typer.Option(help="Gain of its amplifier.", rich_help_panel=BRIDGE)] = 1.0
-    poisson: Annotated[
-        float | None, typer.Option(help="Poisson's ratio of the bar, for a full bridge.", rich_help_panel=BRIDGE)
-    ] = None
+    excitation: Annotated[float | None, _of_bridge(help="Voltage that supplies the bridge (V).")] = None
+    gain: Annotated[float, _of_bridge(help="Gain of its amplifier.")] = 1.0
+    poisson: Annotated[float | None, _of_bridge(help="Poisson's ratio of the bar, for a full bridge.")] = None
     youngs_modulus: Annotated[
-        float | None,
-        typer.Option("--youngs-modulus", help="E of the bar (Pa); by default ρc².", rich_help_panel=BRIDGE),
+        float | None, _of_bridge("--youngs-modulus", help="E of the bar (Pa); by default ρc².")
     ] = None
-    no_baseline: Annotated[
-        bool, typer.Option("--no-baseline", help="Remove no baseline at all.", rich_help_panel=CLEANING)
-    ] = False
-    no_drift: Annotated[bool, typer.Option("--no-drift", help="Remove no drift.", rich_help_panel=CLEANING)] = False
-    low_pass: Annotated[float | None, typer.Option(help="Keep what is below (Hz).", rich_help_panel=CLEANING)] = None
-    high_pass: Annotated[float | None, typer.Option(help="Keep what is above (Hz).", rich_help_panel=CLEANING)] = None
+    no_baseline: Annotated[bool, _cleaning("--no-baseline", help="Remove no baseline at all.")] = False
+    no_drift: Annotated[bool, _cleaning("--no-drift", help="Remove no drift.")] = False
+    low_pass: Annotated[float | None, _cleaning(help="Keep what is below (Hz).")] = None
+    high_pass: Annotated[float | None, _cleaning(help="Keep what is above (Hz).")] = None
     band: Annotated[
         tuple[float, float] | None,
-        typer.Option(
-            metavar="LOW HIGH", help="Low and high pass in one: the band that remains (Hz).", rich_help_panel=CLEANING
-        ),
+        _cleaning(metavar="LOW HIGH", help="Low and high pass in one: the band that remains (Hz)."),
     ] = None
-    notch: Annotated[
-        list[float] | None,
-        typer.Option(help="Remove this frequency (Hz). May be repeated.", rich_help_panel=CLEANING),
-    ] = None
+    notch: Annotated[list[float] | None, _cleaning(help="Remove this frequency (Hz). May be repeated.")] = None
 
     def reading(self, column: str | None = None) -> Reading:
         """How a column of a file is read; raises CaseError for impossible options of a bridge."""
@@ -108,8 +80,7 @@ class SignalOptions:
 
         Raises CaseError for a band beside a low or high pass.
         """
-        from dembound.gauge.baseline import Treatment
-        from dembound.gauge.filters import Filters
+        from dembound.gauge.baseline import Filters, Treatment
 
         low_pass, high_pass = self.low_pass, self.high_pass
         if self.band is not None:

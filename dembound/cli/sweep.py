@@ -1,4 +1,4 @@
-"""The command sweep."""
+"""Commands for many runs: sweep, library and respond."""
 
 from __future__ import annotations
 
@@ -11,23 +11,30 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from dembound.cli.app import (
+    MORE,
     Name,
     Output,
     PictureTitle,
     Scheduler,
     Settings,
+    Threads,
     Vary,
     app,
     load_case,
+    load_disks,
+    prepare_computing,
     require_one_place,
 )
-from dembound.cli.console import INTERVAL, err, out, print_rows
+from dembound.cli.calibration import OneCase
+from dembound.cli.console import INTERVAL, ending_with, err, out, print_rows
+from dembound.cli.options import leave
 from dembound.errors import CaseError
-from dembound.interrupts import exit_code_of
 from dembound.studies.asked import Method
 from dembound.words import in_one_unit
 
 if TYPE_CHECKING:
+    from dembound.studies.library import LoadFactor
+    from dembound.studies.sweep.members import Member
     from dembound.studies.sweep.study import Report, Standing
     from dembound.studies.sweep.tables import Statistic, Swept
 
@@ -51,7 +58,7 @@ SweepAction = Literal["run", "calibrate"]
 
 @app.command("sweep")
 def sweep(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
+    case: OneCase,
     vary: Vary = None,
     together: Annotated[
         bool | None,
@@ -107,18 +114,14 @@ def sweep(
     for line in left_out:
         err.print(f"{loaded.name}: {line}")
     folder = output / f"{loaded.name}_sweep"
-    try:
-        with shown(loaded.name) as report:
-            outcomes = sweep_all(members, options, folder, report)
-    except KeyboardInterrupt as stop:
-        err.print(f"{loaded.name}: stopped; the same command continues what is left")
-        raise typer.Exit(exit_code_of(stop)) from None
+    said = f"{loaded.name}: stopped; the same command continues what is left"
+    with ending_with(said), shown(loaded.name) as report:
+        outcomes = sweep_all(members, options, folder, report)
     from dembound.studies.sweep.tables import Swept
 
     swept = Swept(loaded, options.action, members, outcomes, quantity or [])
     has_failed = _print(swept)
-    for path in _leave(swept, folder, title):
-        out.print(f"wrote {path}")
+    _leave(swept, folder, title)
     if has_failed:
         raise typer.Exit(FAILED)
 
@@ -172,29 +175,32 @@ def _print(swept: Swept) -> bool:
     """Print failed members, warnings, and means of the shown quantities; returns whether any has failed."""
     from dembound.studies.sweep.tables import statistics
 
-    failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
-    for member, state in failed:
-        err.print(f"{swept.case.name}: {member}: failed, {state}")
-    print_warnings(swept.case.name, swept.warnings, len(swept.members))
+    failed = print_failed(swept.case.name, swept.members, swept.states, swept.warnings)
     found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
     if found:
         print_rows(swept.case.name, list(_rows(found[:MOST_ROWS])), left=2)
     if len(found) > MOST_ROWS:
         out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
-    out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
-    return bool(failed)
+    out.print(f"{swept.case.name}: {len(swept.members) - failed} of {len(swept.members)} members done")
+    return failed > 0
 
 
-def print_warnings(name: str, warnings: Mapping[str, int], count: int, members: str = "members") -> None:
-    """Print distinct warnings of a number of members, each once with the number of those that have it.
+def print_failed(
+    name: str, own: Sequence[Member], states: Sequence[str], warnings: Mapping[str, int], members: str = "members"
+) -> int:
+    """Print the members of a sweep that failed, and distinct warnings, each once with the number of those that have it.
 
-    members : as of `shown`.
+    own : the members; members : as of `shown`. Returns how many have failed.
     """
+    failed = [(member.name, state) for member, state in zip(own, states, strict=True) if state != "done"]
+    for member, state in failed:
+        err.print(f"{name}: {member}: failed, {state}")
     for text, having in list(warnings.items())[:MOST_WARNINGS]:
-        err.print(f"{name}: warning: {text} ({having} of {count} {members})")
+        err.print(f"{name}: warning: {text} ({having} of {len(own)} {members})")
     if len(warnings) > MOST_WARNINGS:
         left = len(warnings) - MOST_WARNINGS
         err.print(f"{name}: {left} more warnings are in summary.json of the {members}")
+    return len(failed)
 
 
 def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
@@ -206,24 +212,117 @@ def _rows(statistics: Sequence[Statistic]) -> Iterator[Sequence[str]]:
     for each in statistics:
         pairs = zip(short_keys(each.group), each.group.values(), strict=True)
         group = ", ".join(f"{key} {in_words(value)}" for key, value in pairs)
-        numbers, unit = (each.mean, each.spread, each.interval), unit_of(each.quantity)
-        texts = [f"{value:.3g}" for value in numbers]
-        if unit in PREFIXED:
-            texts, unit = in_one_unit(numbers, unit)
-        shown = ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
-        yield group or "all", each.quantity, str(each.count), *shown, "" if unit == "1" else unit
+        yield group or "all", each.quantity, *cells_of(each, unit_of(each.quantity))
 
 
-def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:
-    """Write the results of a sweep, yielding each file."""
+def cells_of(statistic: Statistic, unit: str) -> Iterator[str]:
+    """Count, mean, spread, interval and unit of a statistic as cells of a row."""
+    numbers = statistic.mean, statistic.spread, statistic.interval
+    texts = [f"{value:.3g}" for value in numbers]
+    if unit in PREFIXED:
+        texts, unit = in_one_unit(numbers, unit)
+    yield str(statistic.count)
+    yield from ("–" if value != value else text for value, text in zip(numbers, texts, strict=True))
+    yield "" if unit == "1" else unit
+
+
+def _leave(swept: Swept, folder: Path, title: str | None) -> None:
+    """Write the results of a sweep, printing each file."""
     from dembound.files import remove
     from dembound.studies.sweep.tables import write_tables
 
-    yield from write_tables(swept, folder)
+    for path in write_tables(swept, folder):
+        out.print(f"wrote {path}")
     remove(folder / "sweep.png")
     if swept.shown:
-        from dembound.plot.style import save
-        from dembound.plot.sweep import plot_sweep
+        from dembound.plot.stability import plot_sweep
 
-        save(plot_sweep(folder / "sweep.h5"), folder / "sweep.png", title)
-        yield folder / "sweep.png"
+        leave(plot_sweep(folder / "sweep.h5"), folder / "sweep.png", title)
+
+
+@app.command("library", rich_help_panel=MORE)
+def library(
+    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
+    spacing: Annotated[float, typer.Option(help="Time between two values of the records (s).", min=1e-12)],
+    duration: Annotated[
+        float | None, typer.Option(help="Length of the longest record (s); by default that of the case.", min=1e-12)
+    ] = None,
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+    threads: Threads = None,
+) -> None:
+    """Run each input of a case once, so that respond needs no run.
+
+    Inputs are the waves of the case. Its folder is named after the case with "_library"; see `dembound respond`.
+    """
+    from dembound.cli.progress import progress_of
+    from dembound.studies.library import Library, build_library
+
+    case = load_disks(path, changes, name)
+    prepare_computing(threads)
+    folder = build_library(case, spacing, output, duration, progress_of)
+    made = Library(folder)
+    step = f"time step {made.case.run.time_step:.10g} s"
+    out.print(f"{case.name}: library of {', '.join(made.inputs)}, {made.clock.duration:g} s, {step}, in {folder}")
+
+
+@app.command("respond", rich_help_panel=MORE)
+def respond(
+    folder: Annotated[Path, typer.Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
+    records: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="RECORD...",
+            help="Text files of time (s) and velocity (m/s); of a library with several inputs INPUT=FILE,INPUT=FILE.",
+        ),
+    ],
+    output: Output = Path("results"),
+    contacts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--load-factor",
+            metavar="MONITOR,MONITOR",
+            help="Print the load factor of each record at the contact between the disks of two monitors. May be "
+            "repeated.",
+        ),
+    ] = None,
+) -> None:
+    """Write histories under records from a library, without a run.
+
+    They equal a direct run with a file wave (at an angle in layers within 5e-6); plot and compare take them as runs.
+    """
+    from dembound.results.folder import Folder
+    from dembound.results.reader import understood
+    from dembound.studies.library import (
+        Library,
+        load_factor,
+        read_records,
+        record_warnings,
+        watched_contacts,
+        write_response,
+    )
+
+    with understood(folder):
+        made = Library(folder)
+    given = read_records(records, made.inputs, made.clock)
+    for record in given:
+        Folder(output, record.name).check()
+    watched = watched_contacts(made, contacts) if contacts else []
+    for record, warning in record_warnings(made, given):
+        err.print(f"{record.name}: warning: {warning}")
+    for record in given:
+        motion = write_response(made, record, output / record.name / "run.h5")
+        out.print(f"{record.name}: histories in {output / record.name}")
+        if watched:
+            _print_load_factor(record.name, load_factor(made, watched, motion), len(watched))
+
+
+def _print_load_factor(name: str, found: LoadFactor, count: int) -> None:
+    """Print the load factor of a record, and the number of its contacts."""
+    of = f"of {count} contact{'s' * (count > 1)} between monitors alone, not of all contacts"
+    if found.factor == float("inf"):
+        out.print(f"{name}: no limit at any multiple of the record; {of}")
+        return
+    where = f"{found.contact} {found.limit} at t = {found.time:.4g} s"
+    out.print(f"{name}: load factor {found.factor:.6g}, where {where}; {of}")

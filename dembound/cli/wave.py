@@ -14,7 +14,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from dembound.cli.app import MORE, app, png, writable
+from dembound.cli.app import MORE, app, ending_in, png
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
@@ -118,11 +118,76 @@ class ReadingOptions:
         return Reading(self.unit, self.time_step, names, self.series, self.skip)
 
 
-def _csv(param: typer.CallbackParam, path: Path | None) -> Path | None:
-    """A wave to write, if its folder exists. Raises CaseError if its name does not end in ``.csv``."""
-    if path is not None and path.suffix.lower() != ".csv":
-        raise CaseError([f"{param.opts[0]}: is {path}, must end in .csv"])
-    return writable(path)
+@dataclass(frozen=True)
+class GroundOptions:
+    """The ground of a case, to whose surface a record belongs."""
+
+    deconvolve: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CASE", help="Take the record as the surface of this case: write the incident wave below."
+        ),
+    ] = None
+    kinds: Annotated[
+        list[Kind] | None,
+        typer.Option(
+            "--as",
+            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default the "
+            "case's only one.",
+        ),
+    ] = None
+    damping: Annotated[
+        Damping,
+        typer.Option(
+            metavar="DAMPING",
+            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
+            "equivalent-linear programs; or constant_q, causal.",
+        ),
+    ] = "as_run"
+    transfer: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="NAME.png",
+            help="Picture of the transfer functions of the ground in --deconvolve to write (PNG and CSV).",
+            callback=png,
+        ),
+    ] = None
+
+    def require_kinds(self, channels: Sequence[Channel]) -> None:
+        """Raise CaseError for kinds of waves without a case, or fewer or more than channels."""
+        if self.kinds and (self.deconvolve is None or len(self.kinds) != len(channels)):
+            names = ", ".join(channel.component or "-" for channel in channels)
+            raise CaseError([f"--as: must be given with --deconvolve once for each component, in their order: {names}"])
+
+    def below(self, motions: list[Motion]) -> list[Motion]:
+        """The incident motions of these kinds below the ground whose surface moves so; writes its transfer functions.
+
+        Without a case the motions themselves.
+        """
+        if self.deconvolve is None:
+            if self.transfer is not None or self.damping != "as_run":
+                raise CaseError(["--transfer, --damping: go with --deconvolve"])
+            return motions
+        from dembound.plot.record import plot_transfers
+        from dembound.plot.style import save
+        from dembound.plot.table import write_lines
+        from dembound.studies.deconvolution import below, ground_of_file, transfers
+
+        if not self.deconvolve.is_file():
+            raise CaseError([f"--deconvolve: no file {self.deconvolve}"])
+        case = ground_of_file(self.deconvolve)
+        names: Sequence[Literal["s", "p"] | None] = [each.value for each in self.kinds or ()] or [None] * len(motions)
+        found = below(case, motions, names, self.damping)
+        if self.transfer is not None:
+            figure = plot_transfers(transfers(case, motions, names), f"Ground of {case.name}")
+            table = self.transfer.with_suffix(".csv")
+            save(figure, self.transfer)
+            write_lines(figure, table)
+            out.print(f"wrote {self.transfer} and {table}")
+        return found
+
+
+_csv = ending_in(".csv")
 
 
 @app.command("wave", rich_help_panel=MORE)
@@ -145,40 +210,11 @@ def wave(
     picture: Annotated[
         Path | None, typer.Option(help="Picture to write (PNG); by default that of the wave.", callback=png)
     ] = None,
-    deconvolve: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="CASE", help="Take the record as the surface of this case: write the incident wave below."
-        ),
-    ] = None,
-    kinds: Annotated[
-        list[Kind] | None,
-        typer.Option(
-            "--as",
-            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default the "
-            "case's only one.",
-        ),
-    ] = None,
-    damping: Annotated[
-        Damping,
-        typer.Option(
-            metavar="DAMPING",
-            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
-            "equivalent-linear programs; or constant_q, causal.",
-        ),
-    ] = "as_run",
-    transfer: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="NAME.png",
-            help="Picture of the transfer functions of the ground in --deconvolve to write (PNG and CSV).",
-            callback=png,
-        ),
-    ] = None,
+    *,
+    ground: GroundOptions,
     table: Annotated[
         Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture to write (CSV).", callback=_csv)
     ] = None,
-    *,
     reading: ReadingOptions,
     processing: ProcessingOptions,
 ) -> None:
@@ -198,38 +234,25 @@ def wave(
     paths = _paths(target, channels)
     if same := next((path for path in paths if path.exists() and path.samefile(file)), None):
         raise CaseError([f"--output: {same} is the record"])
-    if kinds and (deconvolve is None or len(kinds) != len(channels)):
-        names = ", ".join(channel.component or "-" for channel in channels)
-        raise CaseError([f"--as: must be given with --deconvolve once for each component, in their order: {names}"])
+    ground.require_kinds(channels)
     out.print(f"{file}: {record.format}, {record.title or 'no title'}")
     for remark in record.remarks:
         err.print(f"warning: {remark}")
     for line in record.chosen:
         out.print(f"  {line}")
-    motions = [processed(channel, processing.of(channel)) for channel in channels]
-    if deconvolve is not None:
-        motions = _below(deconvolve, motions, kinds, damping, transfer)
-    elif transfer is not None or damping != "as_run":
-        raise CaseError(["--transfer, --damping: go with --deconvolve"])
+    motions = ground.below([processed(channel, processing.of(channel)) for channel in channels])
     for line in _lines(motions):
         out.print(f"  {line}")
     out.print(_table(channels, motions, processing))
     for motion in motions:
         for warning in motion.warnings():
             err.print(f"warning: {motion.component or file.stem}: {warning}")
+    made = f"made by dembound wave of {file.name}, {record.format}"
     for path, motion in zip(paths, motions, strict=True):
-        origin = [
-            f"made by dembound wave of {file.name}, {record.format}",
-            record.title,
-            *record.chosen,
-            *record.remarks,
-            f"component: {motion.component}",
-        ]
+        origin = (made, record.title, *record.chosen, *record.remarks, f"component: {motion.component}")
         write_wave(path, motion, [line for line in origin if line])
         out.print(f"wrote {path}")
-    drawn = picture or target.with_suffix(".png")
-    figure = plot_motions(motions, record.title or file.name)
-    leave(figure, drawn, table=table)
+    leave(plot_motions(motions, record.title or file.name), picture or target.with_suffix(".png"), table=table)
 
 
 def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
@@ -246,28 +269,6 @@ def _chosen(record: Record, names: Sequence[str] | None) -> list[Channel]:
     return [channel for name in chosen for channel in record.channels if channel.component.casefold() == name]
 
 
-def _below(
-    path: Path, motions: Sequence[Motion], kinds: Sequence[Kind] | None, damping: Damping, transfer: Path | None
-) -> list[Motion]:
-    """The incident motions of these kinds below the ground of a case whose surface moves so; its transfer functions."""
-    from dembound.plot.record import plot_transfers
-    from dembound.plot.style import save
-    from dembound.plot.table import write_lines
-    from dembound.studies.deconvolution import below, ground_of_file, transfers
-
-    if not path.is_file():
-        raise CaseError([f"--deconvolve: no file {path}"])
-    case = ground_of_file(path)
-    names: Sequence[Literal["s", "p"] | None] = [kind.value for kind in kinds] if kinds else [None] * len(motions)
-    found = below(case, motions, names, damping)
-    if transfer is not None:
-        figure = plot_transfers(transfers(case, motions, names), f"Ground of {case.name}")
-        save(figure, transfer)
-        write_lines(figure, transfer.with_suffix(".csv"))
-        out.print(f"wrote {transfer} and {transfer.with_suffix('.csv')}")
-    return found
-
-
 def _lines(motions: Sequence[Motion]) -> Iterator[str]:
     """What was done, in one line for all components where it is the same."""
     for steps in zip(*(motion.steps for motion in motions), strict=True):
@@ -279,7 +280,7 @@ def _lines(motions: Sequence[Motion]) -> Iterator[str]:
 
 def _table(channels: Sequence[Channel], motions: Sequence[Motion], options: ProcessingOptions) -> Table:
     """The measures of all components, a row each."""
-    from dembound.records.measures import measures_of, usable_band
+    from dembound.records.processing import measures_of, usable_band
     from dembound.waves.unit_names import STANDARD_GRAVITY
 
     table = compact_table(show_edge=False)

@@ -33,7 +33,7 @@ from dembound.disks.surroundings.edges import edges_beside_column, find_edges, h
 from dembound.disks.surroundings.frequencies import mechanisms_of
 from dembound.disks.surroundings.layered_waves import undisturbed
 from dembound.disks.surroundings.mesh import NO_FLOORS, Outline
-from dembound.holes.floor import Floor
+from dembound.holes.hole import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.state import Layout
 from dembound.packings.column import Seam, with_column

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dembound.boundaries.signals import Incident, Waves
-from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.boundaries.support import Incident, SupportBuilder, Supports, Waves
 from dembound.casefile.disks.load import FREE_FIELD, Load
 from dembound.casefile.disks.model import DiskCase
 from dembound.continuum.edges import Traction, traction_in

@@ -23,10 +23,9 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.files import replacing
 from dembound.gauge.baseline import Treatment, treated
-from dembound.gauge.checks import implausible_size, not_above_zero, unfit_signal
 from dembound.gauge.estimates import FEWEST
-from dembound.gauge.peaks import CREST, denoised, noise_left, smooth, white_noise, width_of
-from dembound.gauge.reading.recorded import is_record, require_for_results
+from dembound.gauge.gauge_io import implausible_size, is_record, not_above_zero, require_for_results, unfit_signal
+from dembound.gauge.peaks import CREST, denoised, longest, noise_left, smooth, white_noise, width_of
 from dembound.gauge.reading.signal import Reading, Signal, read_signal
 from dembound.results.reader import history_of, open_record
 from dembound.words import percent
@@ -280,12 +279,8 @@ def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> 
         raise CaseError([f"--incident-window: {said}, the record is from {time[0]:.6g} to {time[-1]:.6g} s"])
     left = float(np.interp(starts[0] + length, time, signals.incident)) / float(np.abs(signals.incident).max())
     if abs(left) > ENDED:
-        raise CaseError(
-            [
-                f"--incident-window: the incident pulse has not ended at {starts[0] + length:.6g} s, when its "
-                f"reflection is back, or the window or the record ends ({percent(left)} of its crest)"
-            ]
-        )
+        said = f"the incident pulse has not ended at {starts[0] + length:.6g} s, when its reflection is back"
+        raise CaseError([f"--incident-window: {said}, or the window or the record ends ({percent(left)} of its crest)"])
     since = step * np.arange(int(length / step))
     pulses = zip((signals.incident, signals.incident, signals.transmitted), starts, (near, -near, -far), strict=True)
     moved = [math.exp(-setup.attenuation * way) * np.interp(at + since, time, values) for values, at, way in pulses]
@@ -323,7 +318,7 @@ def specimen(faces: Faces, setup: Setup, tolerance: float = EQUILIBRIUM) -> Spec
     loaded = (first_force > least) & (second_force > least)
     ratio = np.divide(first_force, second_force, out=np.full(len(front), np.nan), where=loaded)
     # |F_1 − F_2| ≤ tolerance · (F_1 + F_2)/2 in terms of R = F_1/F_2
-    equilibrium = _longest(np.abs(ratio - 1.0) <= 0.5 * tolerance * (ratio + 1.0))
+    equilibrium = longest(np.abs(ratio - 1.0) <= 0.5 * tolerance * (ratio + 1.0))
     first, end = equilibrium or (0, len(rate))
     stress = 0.5 * (front + back)
     largest = first + int(np.argmax(denoised(stress)[first:end]))
@@ -332,12 +327,3 @@ def specimen(faces: Faces, setup: Setup, tolerance: float = EQUILIBRIUM) -> Spec
         slope = float(np.polyfit(strain[there], stress[there], 1)[0])
     strains = strain, one_wave_strain
     return Specimen(faces.time, front, back, rate, one_wave_rate, *strains, ratio, equilibrium, largest, slope)
-
-
-def _longest(there: np.ndarray) -> tuple[int, int] | None:
-    """First sample, and the one after the last, of the longest run of true values (n,); None without any."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], there.astype(int), [0]])))
-    if not len(edges):
-        return None
-    longest = int((edges[1::2] - edges[::2]).argmax())
-    return int(edges[2 * longest]), int(edges[2 * longest + 1])

@@ -7,12 +7,9 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge import estimates
-from dembound.gauge.checks import implausible_size
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.gauge_io import Gauge, not_on_bar
-from dembound.gauge.matching import matched
-from dembound.gauge.peaks import Peaks, noise_worth, positive_peaks
-from dembound.gauge.reading.recorded import FREE
+from dembound.gauge.gauge_io import FREE, Gauge, implausible_size, not_on_bar
+from dembound.gauge.peaks import Peaks, matched, noise_worth, positive_peaks
 
 AGREEMENT = 0.05
 """Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""

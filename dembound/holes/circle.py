@@ -1,28 +1,23 @@
 """A circular hole."""
 
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 
-from dembound.holes.hole import Hole
+from dembound.holes.hole import Centred
 from dembound.holes.outline import EllipseOutline
-from dembound.table import Box, quantity, shifted_place
+from dembound.table import Box, quantity
 
 
-class Circle(Hole):
+class Circle(Centred):
     """A tunnel or a borehole."""
 
     type: Literal["circle"]
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
     radius: float = quantity(..., unit="m", means="length", help="radius", gt=0.0)
 
     def depth(self, positions: np.ndarray) -> np.ndarray:
         """Distances (k,) m of positions (k, 2) m from the circle, negative outside."""
         return self.radius - np.hypot(*(positions - self.centre).T)
-
-    def shifted(self, by: tuple[float, float]) -> Self:
-        """The hole shifted by (x, y) m."""
-        return self.model_copy(update={"centre": shifted_place(self.centre, by)})
 
     @property
     def box(self) -> Box:

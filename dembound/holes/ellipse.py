@@ -1,22 +1,21 @@
 """An elliptic hole."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from dembound.holes.hole import Hole
+from dembound.holes.hole import Centred
 from dembound.holes.outline import EllipseOutline
-from dembound.table import Box, quantity, shifted_place
+from dembound.table import Box, quantity
 
 Length = Annotated[float, Field(gt=0.0)]
 
 
-class Ellipse(Hole):
+class Ellipse(Centred):
     """A cavern, or a crack where one axis is short."""
 
     type: Literal["ellipse"]
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
     semi_axes: tuple[Length, Length] = quantity(
         ..., unit="m", means="length", help="[a, b], half its length and half its width"
     )
@@ -38,10 +37,6 @@ class Ellipse(Hole):
         scaled = (positions - self.centre) @ np.array([[c, -s], [s, c]]) / axes
         steepness = np.hypot(*(2.0 * scaled / axes).T)
         return (1.0 - (scaled**2).sum(axis=1)) / np.maximum(steepness, 1.0 / axes.max())
-
-    def shifted(self, by: tuple[float, float]) -> Self:
-        """The hole shifted by (x, y) m."""
-        return self.model_copy(update={"centre": shifted_place(self.centre, by)})
 
     @property
     def box(self) -> Box:

@@ -5,12 +5,12 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds
-from dembound.methods.method import WIDEST, Method
+from dembound.methods.method import Peridynamic
 from dembound.methods.rod import Rod
 from dembound.table import quantity
 
 
-class Peridynamics(Method):
+class Peridynamics(Peridynamic):
     """Every node is bonded to all within the horizon δ = mΔx (L eq. 8); a bond breaks at the critical stretch.
 
     Near an end the family is cut, and the bar is softer there. Corrected ends restore the stiffness: local springs
@@ -18,20 +18,12 @@ class Peridynamics(Method):
     """
 
     type: Literal["peridynamics"]
-    horizon: int = quantity(
-        ..., unit="1", means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
-    )
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 
     @property
     def name(self) -> str:
         """Name of the method at the start, for reports."""
         return f"peridynamics, m = {self.horizon}"
-
-    @property
-    def largest_horizon(self) -> int:
-        """The horizon m."""
-        return self.horizon
 
     @property
     def horizon_beyond(self) -> int:

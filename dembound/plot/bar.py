@@ -19,10 +19,10 @@ from dembound.plot.style import (
     REFERENCE,
     SIGNED_MAP,
     TimeUnit,
+    finished,
     line_style,
     measured_once,
     new_figure,
-    outside_legend,
     styled,
     time_unit,
 )
@@ -153,9 +153,7 @@ def _draw(course: SpaceTimeField) -> Figure:
     """All fields of a bar's course."""
     figure = _draw_maps(course) if len(course.time) >= FEWEST else _draw_profiles(course)
     shown = " and ".join(FIELDS[name].words for name in course.values)
-    figure.suptitle(f"{course.case}: {shown} along the bar", fontsize=11)
-    outside_legend(figure, figure.axes, columns=5)
-    return figure
+    return finished(figure, f"{course.case}: {shown} along the bar", figure.axes, 5)
 
 
 def _draw_maps(course: SpaceTimeField) -> Figure:
@@ -218,5 +216,10 @@ def _draw_profile(panel: Axes, course: SpaceTimeField, name: str, number: int, *
     panel.set_ylabel(FIELDS[name].label)
     if name == "damage":
         panel.set_ylim(-0.05, 1.05)
-        label = f"cracked from a damage of {CRACKED:g}"
-        panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, linestyle="--", zorder=1, label=label)
+        mark_damage(panel)
+
+
+def mark_damage(panel: Axes) -> None:
+    """Draw the line of damage above which nodes count as cracked."""
+    label = f"cracked from a damage of {CRACKED:g}"
+    panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, linestyle="--", zorder=1, label=label)

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
-from dembound.plot.style import COLOURS, REFERENCE, Powers, line_style, new_figure, outside_legend, styled, time_unit
+from dembound.plot.style import COLOURS, REFERENCE, Powers, finished, line_style, new_figure, styled, time_unit
 from dembound.results.reader import energy_of, is_line, open_record, side_energies_of, text_of
 
 COLUMNS = {
@@ -116,9 +116,7 @@ def plot_energy(run: Path) -> Figure:
     lower.set_ylabel("error (–)")
     lower.set_xlabel(unit.label)
     lower.set_title("error of the balance over the largest energy supplied", loc="left", fontsize=9, pad=3)
-    figure.suptitle(f"{name}: energy supplied, stored, absorbed and dissipated", fontsize=11)
-    outside_legend(figure, [upper], columns=3)
-    return figure
+    return finished(figure, f"{name}: energy supplied, stored, absorbed and dissipated", [upper], 3)
 
 
 def _of_ledger(columns: dict[str, np.ndarray], bar: bool, divided: bool) -> Iterator[EnergyLine]:

@@ -10,8 +10,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.plot.continuum import GROUP, ContinuumCells, is_scattered, read_continuum
-from dembound.plot.disks import Window, read_holes
+from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import (
     COMPONENTS,
@@ -30,7 +29,7 @@ OF_THE_RUN = ("peak", "layer")
 """The fields that do not change with time."""
 
 FORCES = "forces"
-"""Name of the picture of contacts, see plot/chains.py."""
+"""Name of the picture of contacts, see plot/packing.py."""
 
 MEGA = 1e6
 """Pascals in a megapascal."""

@@ -10,7 +10,16 @@ from matplotlib.figure import Figure
 
 from dembound.casefile.disks.load import FREE_FIELD
 from dembound.errors import CaseError
-from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, stacked_height, styled, time_unit
+from dembound.plot.style import (
+    TimeUnit,
+    finished,
+    line_style,
+    measured_once,
+    new_figure,
+    stacked_height,
+    styled,
+    time_unit,
+)
 from dembound.results.histories import SCALES, UNITS, Band, MonitorRecord, Quantity, read_bands, read_histories
 from dembound.results.reader import COMPONENTS, open_record, record_names
 
@@ -71,11 +80,9 @@ def plot_histories(
         raise CaseError(["component: is of motions; the stress of a bar is that along it"])
     histories = [read_histories(path, quantity) for path in runs]
     shown = chosen_monitors(runs, histories, monitors)
-    drawn = [{name: run[name] for name in (*shown, *map(twin_of, shown)) if name in run} for run in histories]
-    columns = shown_columns(drawn, component)
-    unit = time_unit(max(history.time.max(initial=0.0) for run in drawn for history in run.values()))
-    height = stacked_height(len(shown))
-    figure = new_figure(9.0 if len(columns) == 1 else 12.0, height)
+    drawn = those(histories, (*shown, *map(twin_of, shown)))
+    columns, unit = shown_columns(drawn, component), _time_unit_of(drawn)
+    figure = new_figure(9.0 if len(columns) == 1 else 12.0, stacked_height(len(shown)))
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
     bands = [read_bands(path, quantity) for path in runs]
     twins = any(twin_of(name) in run for run in drawn for name in shown)
@@ -87,16 +94,15 @@ def plot_histories(
                 if monitor in run and monitor in band and column < band[monitor].half_width.shape[1]:
                     history, units = run[monitor], (unit.seconds, SCALES[quantity])
                     draw_band(panel, band[monitor], history.time, history.values[:, column], column, units, label)
-    for row, monitor in zip(panels, shown, strict=True):
-        row[0].set_title(
-            monitor_title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
-        )
+    title_monitors(panels, shown, drawn)
     for panel in panels[-1]:
         panel.set_xlabel(unit.label)
-    _name_axes(figure, panels, quantity, columns)
+    name_columns(panels, columns)
+    of = f"{quantity} {' and '.join(map(direction, columns))}"
+    beside = f"{of if len(columns) == 1 else quantity}{SENSES.get(quantity, '')} ({UNITS[quantity][columns[0]]})"
+    figure.supylabel(beside, fontsize=10)
     measured_once(panels)
-    outside_legend(figure, panels.flat, columns=3)
-    return figure
+    return finished(figure, f"{of.capitalize()} at the monitors", panels.flat, 3)
 
 
 def _draw(
@@ -110,13 +116,20 @@ def _draw(
             panel.plot(history.time / seconds, history.values[:, column], label=words, gid=name, **looks)
 
 
-def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: Sequence[int]) -> None:
-    """Write quantity, component and unit on the axes of the panels (rows, columns)."""
-    sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
-    shown = f"{quantity} {' and '.join(map(direction, columns))}"
-    name_columns(panels, columns)
-    figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
-    figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
+def those(runs: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
+    """For each run the histories of the named monitors that it has."""
+    return [{name: run[name] for name in names if name in run} for run in runs]
+
+
+def _time_unit_of(runs: Sequence[Histories]) -> TimeUnit:
+    """The unit for the times of all histories."""
+    return time_unit(max(history.time.max(initial=0.0) for run in runs for history in run.values()))
+
+
+def title_monitors(panels: np.ndarray, shown: Sequence[str], runs: Sequence[Histories]) -> None:
+    """Write above the first panel of each row (rows, columns) which monitor it shows, and where that is."""
+    for panel, monitor in zip(panels[:, 0], shown, strict=True):
+        panel.set_title(monitor_title(monitor, runs), loc="left", fontsize=9, pad=3)
 
 
 def name_columns(panels: np.ndarray, columns: Sequence[int]) -> None:
@@ -132,11 +145,10 @@ def twin_of(monitor: str) -> str:
     return f"{monitor}{FREE_FIELD}"
 
 
-def monitor_title(monitor: str, histories: Sequence[MonitorRecord]) -> str:
-    """Name of the monitor, position of its particle in each run, and the given position if it differs."""
-    places, requested = (
-        list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "requested")
-    )
+def monitor_title(monitor: str, runs: Sequence[Histories]) -> str:
+    """Name of the monitor, position of its particle in each run that has it, and the given position if it differs."""
+    own = [run[monitor] for run in runs if monitor in run]
+    places, requested = (list(dict.fromkeys(getattr(each, what) for each in own)) for what in ("place", "requested"))
     asked = "" if places == requested else f", requested {_in_words(requested)}"
     return f"{monitor} at {_in_words(places)}{asked}"
 
@@ -221,16 +233,16 @@ def plot_section(
     common = [name for name in shown if all(name in run for run in histories)]
     if len(common) < 2:
         raise CaseError([f"--monitor: a section needs two monitors that all runs have, here are {len(common)}"])
-    those = [{name: run[name] for name in common} for run in histories]
-    (column,) = [0] if quantity == "stress" else shown_columns(those, component)
-    unit = time_unit(max(history.time.max(initial=0.0) for run in those for history in run.values()))
+    drawn = those(histories, common)
+    (column,) = [0] if quantity == "stress" else shown_columns(drawn, component)
+    unit = _time_unit_of(drawn)
     distances = [_distances(path, common) for path in runs]
-    largest = max(float(np.abs(h.values[:, column]).max(initial=0.0)) for run in those for h in run.values())
+    largest = max(float(np.abs(h.values[:, column]).max(initial=0.0)) for run in drawn for h in run.values())
     gap = max(float(np.ptp(each)) for each in distances) / (len(common) - 1) or 1.0
     scale = SPREAD * gap / (largest or 1.0)
     figure = new_figure(8.0, 3.5 + 0.4 * len(common))
     panel = figure.subplots()
-    for index, (run_name, run, along) in enumerate(zip(record_names(runs), those, distances, strict=True)):
+    for index, (run_name, run, along) in enumerate(zip(record_names(runs), drawn, distances, strict=True)):
         style: dict[str, Any] = line_style(index)
         for (name, history), distance in zip(run.items(), along, strict=True):
             raised = distance + scale * history.values[:, column]
@@ -243,9 +255,7 @@ def plot_section(
     panel.set_ylabel(f"distance from {common[0]} (m), {quantity}{where} upwards", fontsize=9)
     size = f"{gap:.3g} m upwards is {gap / scale:.3g} {UNITS[quantity][column]}"
     panel.set_title(size, loc="left", fontsize=9)
-    figure.suptitle(f"Section of the {quantity} at the monitors", fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    return finished(figure, f"Section of the {quantity} at the monitors", [panel], 3)
 
 
 def _distances(path: Path, names: Sequence[str]) -> np.ndarray:
@@ -287,9 +297,7 @@ def plot_hodograph(
                 panel.plot(x, y, label=run_name, gid=name, linewidth=0.9, **style)
                 panel.plot(x[-1:], y[-1:], "o", color=style["color"])
         panel.set_aspect("equal", adjustable="datalim")
-        panel.set_title(monitor_title(name, [run[name] for run in histories if name in run]), loc="left", fontsize=8)
+        panel.set_title(monitor_title(name, histories), loc="left", fontsize=8)
         panel.set_xlabel(f"{quantity} along x ({unit})", fontsize=8)
         panel.set_ylabel(f"{quantity} along y ({unit})", fontsize=8)
-    figure.suptitle(f"Paths of the {quantity} at the monitors, dots at their ends", fontsize=11)
-    outside_legend(figure, list(np.ravel(panels)), columns=3)
-    return figure
+    return finished(figure, f"Paths of the {quantity} at the monitors, dots at their ends", list(np.ravel(panels)), 3)

@@ -1,21 +1,32 @@
-"""Pictures of laboratory tests: curves of stress and strain, the sample as it breaks, and the envelope of strengths."""
+"""Pictures of laboratory tests: those that are computed, and those on bars with gauges.
+
+A computed test has curves of stress and strain, the sample as it breaks, and the envelope of strengths. A gauge on a
+bar has its signal and the stress near the bar's free end (L figs 10 and 11), a split Hopkinson test the waves at the
+faces of the specimen, its forces, strain rate and stress–strain curve.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from dembound.gauge.estimates import near_free_end
+from dembound.gauge.gauge_io import Gauge
+from dembound.gauge.hopkinson import Faces, Specimen
+from dembound.gauge.spalling import Findings, Strength
 from dembound.plot.field import Field, read_disks
 from dembound.plot.scene import draw_panel
-from dembound.plot.style import COLOURS, Powers, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, Powers, finished, line_style, new_figure, styled
 from dembound.results.reader import cracks_until, open_record, snapshots_of
 from dembound.results.recording import LoadingCurve, TestName
 
-MEGA = 1e6
+MEGA, MICRO = 1e6, 1e-6
+"""Pascals in a megapascal, and seconds in a microsecond."""
 
 STRESS: Mapping[TestName, str] = {
     "ucs": "axial stress, compression positive (MPa)",
@@ -74,9 +85,7 @@ def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
     broken.grid(False)
     panel.set_ylim(bottom=0.0)
     panel.set_xlim(left=0.0)
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    return finished(figure, title, [panel], 3)
 
 
 @styled
@@ -114,9 +123,7 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         if number:
             panel.set_ylabel("")
     figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
-    figure.suptitle(f"{disks.case}, {len(disks.radii):,} disks", fontsize=11)
-    outside_legend(figure, panels, columns=2)
-    return figure
+    return finished(figure, f"{disks.case}, {len(disks.radii):,} disks", panels, 2)
 
 
 @styled
@@ -153,9 +160,7 @@ def plot_envelope(title: str, tests: Sequence[tuple[float, float]], angle: float
     circles.set(xlabel="normal stress, compression positive (MPa)", ylabel="shear stress (MPa)", aspect="equal")
     circles.set_xlim(0.0, 1.05 * strength.max())
     circles.set_ylim(0.0, 1.1 * max(0.5 * strength.max(), line.max()))
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [over, circles], columns=2)
-    return figure
+    return finished(figure, title, [over, circles], 2)
 
 
 def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> None:
@@ -163,3 +168,115 @@ def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> Non
     angle = np.linspace(0.0, np.pi, 181)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     panel.plot(middle + half * np.cos(angle), half * np.sin(angle), color=COLOURS[0], label=label)
+
+
+MEASURED = {"Pa": ("stress", "MPa", MEGA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
+"""Unit of a gauge's signal -> its name, and the name and size of the unit in pictures."""
+
+STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
+"""Times of the stresses near the free end, relative to the spall, in travel times from the spall to the end."""
+
+PLACES = 500
+"""Points of each line along the bar."""
+
+
+@styled
+def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
+    """The history, with the tension peaks and their exponential fit if used; next to it the stress near the end.
+
+    The stress near the end is drawn if the position of the spall is given: the incident pulse and its image at several
+    times, without attenuation.
+
+    Parameters
+    ----------
+    gauge, findings
+        the gauge with its signal, and the estimates of `spalling.evaluate`.
+    """
+    figure = new_figure(10.0 if findings.strength else 7.0, 4.6)
+    panels = figure.subplots(1, 2 if findings.strength else 1, squeeze=False)[0]
+    _gauge_history(panels[0], gauge, findings)
+    if findings.strength:
+        _free_end(panels[1], gauge, findings.speed.value, findings.strength)
+    return finished(figure, f"Gauge at {gauge.position:g} m of a bar of {gauge.length:g} m", panels, 3)
+
+
+def _gauge_history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
+    """Stress, strain or voltage against time, its tension peaks, and the exponential through them."""
+    peaks, decay = findings.peaks, findings.attenuation
+    name, unit, size = MEASURED.get(gauge.unit, ("signal", "unit unknown", 1.0))
+    panel.plot(1e3 * gauge.time, gauge.stress / size, color=REFERENCE, linewidth=1.0, label=f"{name} at the gauge")
+    if peaks is not None and len(peaks.time):
+        panel.plot(1e3 * peaks.time, peaks.height / size, "o", color=COLOURS[1], label="tension peaks")
+    if peaks is not None and decay is not None and len(peaks.time) > 1:
+        time = np.linspace(peaks.time[0], peaks.time[-1], PLACES)
+        weights = peaks.height**2  # through the middle of the line that was fitted
+        first, middle = (np.average(each, weights=weights) for each in (np.log(peaks.height), peaks.time))
+        height = np.exp(first - decay.value * findings.speed.value * (time - middle))
+        label = f"exp(−αct), α = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
+        panel.plot(1e3 * time, height / size, color=COLOURS[0], linestyle="--", label=label)
+    panel.set_xlabel("time (ms)")
+    panel.set_ylabel(f"{name}, tension positive ({unit})")
+
+
+def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> None:
+    """Stress along the last part of the bar at several times, and the largest tension where it spalled."""
+    places = np.linspace(min(gauge.position, strength.position), gauge.length, PLACES)
+    times = strength.time + np.array(STEPS) * (gauge.length - strength.position) / speed
+    stresses = near_free_end(*strength.pulse, gauge.position, gauge.length, speed, places, times)
+    for index, (time, stress) in enumerate(zip(times, stresses.T, strict=True)):
+        looks: dict[str, Any] = line_style(index)
+        panel.plot(places, stress / MEGA, label=f"at {1e3 * time:.3f} ms", **looks)
+    label = f"largest tension at {strength.position:g} m: {strength.nominal / MEGA:.3g} MPa"
+    panel.plot(strength.position, strength.nominal / MEGA, "*", color=COLOURS[-1], markersize=10, label=label)
+    panel.axvline(strength.position, color=REFERENCE, linewidth=1.0, zorder=1)
+    panel.set_xlabel("distance from the loaded end (m)")
+    panel.set_ylabel("stress, tension positive (MPa)")
+
+
+@styled
+def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
+    """Four panels; the time in equilibrium is shaded, and the stress–strain curve is bold there.
+
+    Parameters
+    ----------
+    faces, found
+        waves at the faces by `hopkinson.at_faces`, and the specimen by `hopkinson.specimen`.
+    """
+    figure = new_figure(10.0, 7.2)
+    waves, forces, rates, curve = figure.subplots(2, 2).ravel()
+    time = found.time / MICRO
+    passed = {"incident": faces.incident, "reflected": faces.reflected, "transmitted": faces.transmitted}
+    for (name, values), colour in zip(passed.items(), COLOURS, strict=False):
+        waves.plot(time, values / MICRO, color=colour, label=name)
+    _label_history(waves, "strain of waves (µε, load positive)", found)
+    forces.plot(time, found.front / MEGA, color=COLOURS[0], label="front, two waves")
+    forces.plot(time, found.back / MEGA, color=COLOURS[1], linestyle="--", label="back, one wave")
+    _label_history(forces, "stress at the faces (MPa)", found)
+    rates.plot(time, found.rate, color=COLOURS[0], label="three waves")
+    rates.plot(time, found.one_wave_rate, color=COLOURS[1], linestyle="--", label="one wave")
+    _label_history(rates, "strain rate (1/s)", found)
+    curve.plot(100.0 * found.strain, found.stress / MEGA, color=REFERENCE, label="three waves")
+    there = found.in_equilibrium
+    curve.plot(
+        np.where(there, 100.0 * found.strain, np.nan),
+        found.stress / MEGA,
+        color=COLOURS[0],
+        linewidth=2.4,
+        label="in equilibrium",
+    )
+    curve.plot(100.0 * found.one_wave_strain, found.back / MEGA, color=COLOURS[1], linestyle="--", label="one wave")
+    curve.set_xlabel("strain (%)")
+    curve.set_ylabel("stress (MPa)")
+    curve.legend()
+    figure.suptitle("Specimen in a split Hopkinson test; shaded: equilibrium of its forces", fontsize=11)
+    return figure
+
+
+def _label_history(panel: Axes, quantity: str, found: Specimen) -> None:
+    """Axes of a history, and the shaded time in equilibrium."""
+    if found.equilibrium is not None:
+        first, end = found.equilibrium
+        panel.axvspan(*(found.time[[first, end - 1]] / MICRO), color="#D3E2F0")
+    panel.set_xlabel("time since the pulse has reached the specimen (µs)")
+    panel.set_ylabel(quantity)
+    panel.legend()

@@ -12,16 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError
-from dembound.laws.peridynamic import CRACKED
-from dembound.plot.bar import FIELDS, read_course
-from dembound.plot.continuum import GROUP
-from dembound.plot.disks import Window
+from dembound.plot.bar import FIELDS, mark_damage, read_course
+from dembound.plot.disks import GROUP, Window
 from dembound.plot.field import OF_THE_RUN, Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
 from dembound.plot.style import (
     COLOURS,
-    REFERENCE,
     Powers,
     lay_out,
     new_figure,
@@ -85,6 +82,11 @@ WIDTH = 11.0
 """Width of a frame, inches."""
 
 
+def _caption(time: str, broken: int) -> str:
+    """A time in words, and the number of bonds that have broken until then, if any have."""
+    return f"t = {time}" + (f", {counted(broken, 'broken bond')}" if broken else "")
+
+
 class MovingBar:
     """Fields along a bar at every snapshot, and places of the bonds broken until then.
 
@@ -131,8 +133,7 @@ class MovingBar:
             panel.set(xlim=(self._places.min(), self._places.max()), ylim=self._limits(name))
             panel.set_ylabel(FIELDS[name].label)
             if name == "damage":
-                label = f"cracked from a damage of {CRACKED:g}"
-                panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, linestyle="--", zorder=1, label=label)
+                mark_damage(panel)
             self._mark_cracks(panel, index)
         for panel in self._panels[:-1]:
             panel.tick_params(labelbottom=False)
@@ -151,21 +152,13 @@ class MovingBar:
         broken = self._course.crack_place[self._course.crack_time <= self._course.time[index]]
         if len(broken) > 0:
             foot = panel.get_xaxis_transform()
-            looks: dict[str, Any] = {
-                "marker": "|",
-                "s": 60.0,
-                "color": "black",
-                "linewidths": 1.0,
-                "label": "bond broken",
-            }
-            panel.scatter(broken, np.full(len(broken), 0.03), transform=foot, **looks)
+            looks: dict[str, Any] = {"marker": "|", "s": 60.0, "color": "black", "linewidths": 1.0}
+            panel.scatter(broken, np.full(len(broken), 0.03), transform=foot, label="bond broken", **looks)
 
     def caption(self, index: int) -> str:
         """The time of a frame, and how many bonds have broken until then."""
-        broken = int(np.count_nonzero(self._course.crack_time <= self._course.time[index]))
-        return f"t = {self._course.moment(self._course.time[index])}" + (
-            f", {counted(broken, 'broken bond')}" if broken else ""
-        )
+        time = self._course.time[index]
+        return _caption(self._course.moment(time), int(np.count_nonzero(self._course.crack_time <= time)))
 
     @styled
     def frame(self, index: int, pixels: int) -> np.ndarray:
@@ -272,8 +265,7 @@ class MovingScene:
 
     def caption(self, index: int) -> str:
         """The time of a frame, and how many bonds have broken until then."""
-        broken = self._cracks[index]
-        return f"t = {self.times[index]:.4g} s" + (f", {counted(broken, 'broken bond')}" if broken else "")
+        return _caption(f"{self.times[index]:.4g} s", self._cracks[index])
 
     @styled
     def frame(self, index: int, pixels: int) -> np.ndarray:

@@ -1,15 +1,25 @@
-"""Packings: a brick with its seams, and close-ups of packings at an edge (Z figs 2, 9, 10)."""
+"""Disks and their contacts: a brick with its seams, packings at an edge (Z figs 2, 9, 10), and force chains.
+
+Force chains are contacts as lines between the centres of disks, as wide as their normal forces are large.
+"""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
 
+import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from dembound.plot.disks import Window, draw_disks
-from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
+from dembound.errors import CaseError
+from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks, frame
+from dembound.plot.field import Disks, read_disks
+from dembound.plot.scene import DRAWING, LONG, part_around
+from dembound.plot.style import COLOURS, finished, new_figure, styled
+from dembound.results.reader import open_record, snapshot_of, snapshots_of
 
 BLUE, RED, GREEN, YELLOW = (COLOURS[index] for index in (0, 1, 2, 5))
 
@@ -60,10 +70,8 @@ def plot_brick(
         ends = np.concatenate([ends, ends[across] - (images[across] * size)[:, None, :]])
         panel.add_collection(LineCollection(list(ends), colors="black", linewidths=0.6, label="contact"), autolim=False)
         title += f", contacts: {len(pairs)}"
-    _frame(panel, window)
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, [panel], columns=3)
-    return figure
+    frame(panel, window)
+    return finished(figure, title, [panel], 3)
 
 
 def brick_disks(
@@ -113,11 +121,9 @@ def plot_patterns(parts: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
             (near & exposed, BLUE, "boundary particles"),
         ):
             _draw_kind(panel, positions[chosen], radii[chosen], colour, label)
-        _frame(panel, window)
+        frame(panel, window)
         panel.set_title(f"{name}: {len(edge)} boundary particles")
-    figure.suptitle("Packings at the boundary", fontsize=11)
-    outside_legend(figure, panels, columns=2)
-    return figure
+    return finished(figure, "Packings at the boundary", panels, 2)
 
 
 def _edge_window(positions: np.ndarray, radii: np.ndarray, edge: np.ndarray, span: float) -> Window:
@@ -138,7 +144,128 @@ def _draw_kind(panel: Axes, positions: np.ndarray, radii: np.ndarray, colour: st
     panel.scatter([], [], s=50, color=colour, label=label)
 
 
-def _frame(panel: Axes, window: Window) -> None:
-    """Show a window of the axes, in true proportions."""
-    panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
-    panel.grid(False)
+COLUMN = "contacts/normal_force"
+"""Dataset of a snapshot with the forces drawn."""
+
+KILO = 1e3
+"""Newtons in a kilonewton."""
+
+WIDEST = 0.5
+"""Width of the widest lines over the mean diameter of disks."""
+
+LEAST_WIDTH = 2.0
+"""Least width (points) of the widest lines, where disks are small."""
+
+FEW = 0.01
+"""Share of the contacts with lines of equal width, those with the largest forces, which are several times the
+others.
+"""
+
+NARROWEST = 4.0
+"""Least width (inches) of the page for title and legend."""
+
+MOST_LINES = 30_000
+"""Largest number of lines in a picture; the largest forces are drawn."""
+
+PUSH, PULL = COLOURS[0], COLOURS[1]
+"""Colours of compression and tension."""
+
+SHADE = "#E3E3E3"
+"""Colour of the disks."""
+
+
+@dataclass(frozen=True)
+class Chains:
+    """Contacts at one time.
+
+    time in s; positions (n, 2) m of the disks; pairs (b, 2) of disks; ends (b, 2, 2) m of the lines; force (b,) N/m
+    along them, tension positive.
+    """
+
+    time: float
+    positions: np.ndarray
+    pairs: np.ndarray
+    ends: np.ndarray
+    force: np.ndarray
+
+    @property
+    def largest(self) -> np.ndarray:
+        """(n,) N/m, the largest force on each disk without its sign."""
+        largest = np.zeros(len(self.positions))
+        np.maximum.at(largest, self.pairs, np.abs(self.force)[:, None])
+        return largest
+
+
+@styled
+def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
+    """The contacts of a scene, or of a part of one that is long, with the disks behind them at their present positions.
+
+    Parameters
+    ----------
+    run
+        the ``run.h5`` of a run.
+    snapshot
+        its number; negative ones count from the last. By default the one with the largest sum of forces.
+
+    Raises CaseError when the file cannot be read, or has no such snapshot or no contacts.
+    """
+    with open_record(run) as file:
+        disks, chains = read_disks(file), read_chains(file, snapshot)
+    window = _window(disks, chains)
+    scale = min(DRAWING / window.size)
+    width, height = scale * window.size
+    figure = new_figure(max(width, NARROWEST) + 1.2, height + 1.8)
+    panel = figure.subplots()
+    frame(panel, window)
+    if 2.0 * float(disks.radii.mean()) * scale * figure.dpi >= SMALLEST_PIXELS:
+        shown = window.touches(chains.positions, disks.radii)
+        draw_disks(panel, chains.positions[shown], disks.radii[shown], facecolors=SHADE, linewidths=0.0)
+    drawn = _draw_lines(panel, window, chains, max(LEAST_WIDTH, 72.0 * scale * WIDEST * 2.0 * disks.radii.mean()))
+    if disks.seam is not None and window.extent[0] < disks.seam < window.extent[1]:
+        panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
+    return finished(figure, f"{disks.case}: normal forces of {drawn}, t = {chains.time:.3g} s", [panel], 3)
+
+
+def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
+    """The contacts of an open record at a snapshot, see `plot_chains`."""
+    groups = snapshots_of(file, required=True)
+    if COLUMN not in groups[0]:
+        raise CaseError([f"{file.filename}: holds no contacts; runs with output.contacts = true do"])
+    if snapshot is None:
+        group = max(groups, key=lambda each: float(np.abs(each[COLUMN][:]).sum()))
+    else:
+        group = snapshot_of(file, snapshot)
+    positions = file["particles/position"][:] + group["displacement"][:, :2]
+    pairs = group["contacts/particles"][:]
+    begin = positions[pairs[:, 0]]
+    ends = np.stack([begin, begin + group["contacts/vector"][:]], axis=1)
+    return Chains(float(group.attrs["time"]), positions, pairs, ends, group[COLUMN][:])
+
+
+def _window(disks: Disks, chains: Chains) -> Window:
+    """The window of all disks, or in a long scene of the part around the largest forces."""
+    size = disks.own_window.size
+    if max(size) <= LONG * min(size):
+        return disks.own_window
+    return part_around(disks, disks.positions[np.argmax(chains.largest)])
+
+
+def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> str:
+    """Draw the contacts in a window, the widest with a width in points; returns in words what is drawn."""
+    inside = ((chains.ends >= window.corner) & (chains.ends <= window.corner + window.size)).all(axis=2).any(axis=1)
+    ends, force = chains.ends[inside], chains.force[inside]
+    chosen = np.argsort(np.abs(force), kind="stable")[-MOST_LINES:]
+    ends, force = ends[chosen], force[chosen]
+    full = float(np.quantile(np.abs(force), 1.0 - FEW)) if len(force) > 0 else 0.0
+    widths = widest * np.minimum(np.abs(force) / (full or 1.0), 1.0)
+    colours = np.where(force < 0.0, PUSH, PULL).tolist()
+    panel.add_collection(LineCollection(list(ends), linewidths=widths, colors=colours, capstyle="round"), autolim=False)
+    panel.plot([], [], color=PUSH, linewidth=widest, label=f"compression, {_in_words(full)} or more")
+    panel.plot([], [], color=PULL, linewidth=0.5 * widest, label=f"tension, {_in_words(0.5 * full)}")
+    count = np.count_nonzero(inside)
+    return f"{count:,} contacts" if count == len(chosen) else f"the {len(chosen):,} strongest of {count:,} contacts"
+
+
+def _in_words(force: float) -> str:
+    """A force in N/m with two digits."""
+    return f"{np.format_float_positional(force / KILO, precision=2, fractional=False, trim='-')} kN/m"

@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from dembound.plot.histories import chosen_monitors, direction, largest_values, monitor_title
+from dembound.plot.histories import chosen_monitors, direction, largest_values, those, title_monitors
 from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
-from dembound.plot.style import Powers, line_style, measured_once, new_figure, outside_legend, stacked_height, styled
+from dembound.plot.style import Powers, finished, line_style, measured_once, new_figure, stacked_height, styled
 from dembound.records.processing import Motion
 from dembound.results.histories import MonitorRecord, read_histories
 from dembound.results.reader import COMPONENTS, record_names
@@ -116,10 +116,9 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     """
     histories = [read_histories(path, "velocity") for path in runs]
     shown = chosen_monitors(runs, histories, None)
-    drawn = [{name: run[name] for name in shown if name in run} for run in histories]
+    drawn = those(histories, shown)
     column = int(np.argmax(largest_values(drawn))) if component is None else COMPONENTS.index(component)
-    height = stacked_height(len(shown))
-    figure = new_figure(9.0, height)
+    figure = new_figure(9.0, stacked_height(len(shown)))
     panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)
     spectra = []
     for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
@@ -130,17 +129,14 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
             frequencies, amplitudes = spectrum_of(history, column)
             spectra.append((frequencies, amplitudes))
             panels[shown.index(name), 0].plot(frequencies, amplitudes, label=label, gid=name, **line_style(index))
-    for panel, monitor in zip(panels[:, 0], shown, strict=True):
-        title = monitor_title(monitor, [run[monitor] for run in drawn if monitor in run])
-        panel.set_title(title, loc="left", fontsize=9, pad=3)
+    title_monitors(panels, shown, drawn)
+    for panel in panels[:, 0]:
         panel.yaxis.set_major_formatter(Powers())
     panels[-1, 0].set_xlabel("frequency (Hz)")
     panels[-1, 0].set(xlim=(0.0, _end_of(spectra)), ylim=(0.0, None))
     figure.supylabel("amplitude (m/s per Hz)", fontsize=10)
-    figure.suptitle(f"Spectra of the velocity {direction(column)} at the monitors", fontsize=11)
     measured_once(panels)
-    outside_legend(figure, panels.flat, columns=3)
-    return figure
+    return finished(figure, f"Spectra of the velocity {direction(column)} at the monitors", panels.flat, 3)
 
 
 def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.ndarray]:

@@ -12,10 +12,9 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
-from dembound.plot.continuum import draw_continuum
-from dembound.plot.disks import Window, draw_field, draw_outlines
+from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
-from dembound.plot.style import FEWEST_NUMBERS, Powers, measured_once, new_figure, outside_legend, styled
+from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
 
 LONG = 6.0
@@ -94,9 +93,7 @@ def plot_scene(
     ticks = MaxNLocator(integer=True) if field == "layer" else None
     figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers(), ticks=ticks)
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
-    figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
-    outside_legend(figure, panels, columns=3)
-    return figure
+    return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
 
 
 def strips_on_page(scene: Window) -> int:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import line_style, new_figure, outside_legend, point_style, styled, time_unit
+from dembound.plot.style import finished, line_style, new_figure, point_style, styled, time_unit
 from dembound.results.histories import UNITS, SideHistory, read_side_history
 from dembound.results.reader import COMPONENTS, is_line, open_record, record_names, require_run
 
@@ -70,9 +70,9 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     lower.set_xlabel(f"{along}, along the side (m)")
     for panel in (upper, lower):
         _widen(panel)
-    figure.suptitle(f"Particles of the {side} side: diameters, and peaks of their velocity", fontsize=11)
-    outside_legend(figure, [lower], columns=1)  # the labels are long
-    return figure
+    return finished(
+        figure, f"Particles of the {side} side: diameters, and peaks of their velocity", [lower], 1
+    )  # the labels are long
 
 
 def _draw(panels: tuple[Axes, Axes], side: Side, column: int, name: str, style: dict[str, Any]) -> None:
@@ -164,9 +164,7 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
         panel.set_ylabel("mean stress (MPa)" if quantity == "stress" else "mean displacement (m)")
     if strained:
         panels[1].set_xlabel("strain to the opposite side, extension positive (%)")
-    figure.suptitle(f"{quantity.capitalize()} of the {side} side", fontsize=11)
-    outside_legend(figure, [panels[0]], columns=2)
-    return figure
+    return finished(figure, f"{quantity.capitalize()} of the {side} side", [panels[0]], 2)
 
 
 def _values(history: SideHistory, quantity: str) -> np.ndarray:

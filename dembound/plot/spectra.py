@@ -17,12 +17,13 @@ from dembound.plot.histories import (
     Histories,
     chosen_monitors,
     direction,
-    monitor_title,
     name_columns,
     shown_columns,
+    those,
+    title_monitors,
     twin_of,
 )
-from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import REFERENCE, finished, line_style, new_figure, styled
 from dembound.results.histories import UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import record_names
 from dembound.spectra import (
@@ -211,7 +212,7 @@ def _figure(
     """
     histories = [read_histories(path, quantity) for path in runs]
     shown = chosen_monitors(runs, histories, monitors)
-    columns = [0] if quantity == "stress" else shown_columns(_those(histories, shown), component)
+    columns = [0] if quantity == "stress" else shown_columns(those(histories, shown), component)
     figure = new_figure(7.5 if len(columns) == 1 else 12.0, 1.2 + 2.4 * len(shown))
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
     for index, (run_name, run) in enumerate(zip(record_names(runs), histories, strict=True)):
@@ -221,17 +222,13 @@ def _figure(
     if any(_is_faint(line) for panel in panels.flat for line in panel.lines):
         panels.flat[-1].plot([], [], **LEGEND_OF_FAINT)
     on_logarithmic_axes(panels)
-    for row, name in zip(panels, shown, strict=True):
-        place = monitor_title(name, [run[name] for run in histories if name in run])
-        row[0].set_title(place, loc="left", fontsize=9, pad=3)
+    title_monitors(panels, shown, histories)
     for panel in panels[-1]:
         panel.set_xlabel(along)
     has_one = len(columns) == 1 and quantity != "stress"  # which is along the bar
     figure.supylabel(label(f" {direction(columns[0])}" if has_one else "", UNITS[quantity][columns[0]]), fontsize=10)
     name_columns(panels, columns)
-    figure.suptitle(title, fontsize=11)
-    outside_legend(figure, panels.flat, columns=3)
-    return figure
+    return finished(figure, title, panels.flat, 3)
 
 
 def _draw(
@@ -295,11 +292,6 @@ def on_logarithmic_axes(panels: np.ndarray) -> None:
         if np.divide(*panel.get_xlim()[::-1]) < FEW_DECADES:
             panel.xaxis.set_major_locator(LogLocator(subs=NUMBERED))
         panel.set_ylim(0.7 * max(values.min(), DECADES * values.max()), 1.4 * values.max())
-
-
-def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
-    """For each run the histories of the named monitors that it has."""
-    return [{name: run[name] for name in names if name in run} for run in histories]
 
 
 def _time_step(name: str, history: MonitorRecord) -> float:

@@ -201,6 +201,13 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
         legend.remove()
 
 
+def finished(figure: Figure, title: str, panels: Iterable[Axes], columns: int) -> Figure:
+    """The figure with a title above all panels, and one legend below them, see `outside_legend`."""
+    figure.suptitle(title, fontsize=11)
+    outside_legend(figure, panels, columns)
+    return figure
+
+
 def is_seen(artist: Any, panel: Axes) -> bool:
     """Whether any part of an artist is within the axes, and not thinner than a line; False for one without data."""
     if isinstance(artist, tuple):  # bars, and points with the ranges of their errors

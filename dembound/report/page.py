@@ -22,7 +22,7 @@ from dembound.plot.histories import largest_values, plot_histories
 from dembound.plot.record import plot_spectra
 from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
-from dembound.report.runs import ReportedRun, read_runs
+from dembound.report.tables import ReportedRun, read_runs
 from dembound.results.histories import read_histories
 from dembound.results.reader import reading, snapshots_of, understood
 from dembound.version import __version__

@@ -1,22 +1,36 @@
-"""Pictures of a page: embedded data, with their lines as numbers, from which scripts draw charts to zoom."""
+"""Pictures of a page, embedded with their lines as numbers for charts to zoom, and movies of a run.
+
+A movie has the body at every snapshot, and below it the histories with a line at the time.
+"""
 
 from __future__ import annotations
 
 import base64
 import io
+import math
+import os
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from dembound.plot.style import pixels_of, styled
+from dembound.errors import CaseError
+from dembound.files import new_folder, replacing, require_folder
+from dembound.kinds import kind_of_record
+from dembound.motion.kind import MovingPicture
+from dembound.plot.moving import TimeLine
+from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP, pixels_of, styled
 from dembound.plot.table import x_label
+from dembound.results.histories import monitor_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from PIL.Image import Image
 
 MOST_POINTS = 2000
 """Largest number of points of a line; of more, the smallest and the largest of several in a row are kept."""
@@ -138,3 +152,185 @@ def _peak_in_words(panel: dict[str, Any], line: dict[str, Any]) -> str:
         return f"{line['name']}{place}: no values"
     peak = int(np.nanargmax(sizes))
     return f"{line['name']}{place}: peak {line['y'][peak]:.4g} where x is {line['x'][peak]:.4g}"
+
+
+PALETTE_FRAMES = 6
+"""Number of frames from which the common colours of a GIF are taken."""
+
+SHADES = 96
+"""Number of colours from a scene's colour map in the palette: neighbours cannot be distinguished."""
+
+ROUNDING = 2
+"""Largest difference (of 255) between a colour of the map and a drawn pixel in red, green and blue."""
+
+RARE = 0.3
+"""Power of the number of pixels as the weight of a colour in the palette: waves are small, and most pixels are
+white.
+"""
+
+WHITE = 245
+"""Value of red, green and blue above which a colour of the palette, a mean of nearly white ones, is made white."""
+
+FASTEST_GIF = 2
+"""Least duration of a GIF's frame in hundredths of a second: browsers show frames of one hundredth ten times as
+long.
+"""
+
+
+@dataclass(frozen=True)
+class Movie:
+    """The frames of a movie: a moving picture at some of its times, and a time line below it, if there is one.
+
+    chosen : numbers of the snapshots shown. pixels : width of a frame.
+    """
+
+    picture: MovingPicture
+    below: TimeLine | None
+    chosen: Sequence[int]
+    pixels: int
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+    def frame(self, number: int) -> np.ndarray:
+        """One frame (rows, columns, 3), of an even number of rows and columns, as videos require."""
+        index = self.chosen[number]
+        parts = [self.picture.frame(index, self.pixels)]
+        if self.below is not None:
+            parts.append(self.below.frame(float(self.picture.times[index]), self.pixels))
+        whole = np.vstack(parts)
+        rows, columns, _ = whole.shape
+        return np.pad(whole, ((0, rows % 2), (0, columns % 2), (0, 0)), mode="edge")
+
+
+def movie_of(
+    record: Path,
+    *,
+    field: str | None = None,
+    exaggerate: float = 0.0,
+    monitors: Sequence[str] | None = None,
+    every: int = 1,
+    pixels: int = 960,
+) -> Movie:
+    """The movie of a run.
+
+    Parameters
+    ----------
+    record
+        a ``run.h5``.
+    field
+        field that colours disks, or is drawn along a bar; by default velocity, for a bar stress and damage.
+    exaggerate
+        factor of the displacements; 0 shows nodes at their first places.
+    monitors
+        monitors whose histories are drawn below; by default all, none if empty.
+    every
+        number of snapshots per frame; the last one is always shown.
+    pixels
+        width of a frame.
+
+    Raises CaseError when the record cannot be read, has fewer than two snapshots, or lacks the field or a monitor.
+    """
+    picture = kind_of_record(record).moving_picture(record, field, exaggerate)
+    count = len(picture.times)
+    if count < 2:
+        raise CaseError([f"{record}: has only one snapshot, a movie needs two; run with output.snapshots above 1"])
+    chosen = sorted({*range(0, count, every), count - 1})
+    return Movie(picture, _below(record, picture.width, monitors), chosen, pixels)
+
+
+def _below(record: Path, width: float, monitors: Sequence[str] | None) -> TimeLine | None:
+    """The histories below the scene."""
+    if monitors is None:
+        monitors = monitor_names(record)
+    return TimeLine(record, width, monitors) if monitors else None
+
+
+def write_movie(
+    movie: Movie, path: Path, fps: float = 10.0, progress: Callable[[int], None] = lambda frames: None
+) -> None:
+    """Write a movie, either completely or not at all: a GIF, or a new folder with a PNG file for each frame.
+
+    Parameters
+    ----------
+    path
+        of the GIF, with this ending, or of the folder, without an ending: ``0000.png`` and so on.
+    fps
+        frames per second of a GIF, whose frames take whole hundredths of a second, at least two.
+    progress
+        called with the number of frames drawn so far.
+
+    Raises CaseError for another ending, or a folder that is there.
+    """
+    require_movie(path)
+
+    def frames() -> Iterator[np.ndarray]:
+        for number in range(len(movie)):
+            yield movie.frame(number)
+            progress(number + 1)
+
+    if path.suffix:
+        colours = _common_colours(movie)
+        with replacing(path) as file:
+            _write_gif((_reduced(frame, colours) for frame in frames()), file, fps)
+        return
+    with new_folder(path) as folder:
+        for number, frame in enumerate(frames()):
+            with replacing(folder / f"{number:04d}.png") as file:
+                _picture(frame).save(file, "png")
+
+
+def require_movie(path: Path) -> None:
+    """Raise CaseError if no movie of such a name can be written here, FileNotFoundError if there is no such folder."""
+    if path.suffix.lower() not in (".gif", ""):
+        raise CaseError([f"--output: is {path}, must end in .gif, or have no ending: a folder for frames as PNG files"])
+    if not path.suffix and os.path.lexists(path):
+        raise CaseError([f"--output: {path} is there already, frames are written to a new folder"])
+    require_folder(path)
+
+
+def _picture(pixels: np.ndarray) -> Image:
+    from PIL import Image
+
+    return Image.fromarray(pixels)
+
+
+def _common_colours(movie: Movie) -> Image:
+    """A picture whose palette has the colours of a few frames of a movie."""
+    some = np.unique(np.linspace(0, len(movie) - 1, PALETTE_FRAMES).astype(int))
+    pixels = np.concatenate([movie.frame(int(number)).reshape(-1, 3) for number in some])
+    found, counts = np.unique(pixels, axis=0, return_counts=True)
+    shades = _shades(found)
+    weighed = np.repeat(found, np.ceil(counts**RARE).astype(int), axis=0)
+    colours = _picture(weighed[None]).quantize(256 - len(shades), kmeans=1)
+    palette = np.concatenate([shades, np.array(colours.getpalette()).reshape(-1, 3)])[:256]
+    palette[palette.min(axis=1) >= WHITE] = 255
+    colours.putpalette(palette.ravel().tolist())
+    return colours
+
+
+def _shades(found: np.ndarray) -> np.ndarray:
+    """Evenly chosen colours (k, 3) of the colour map of a picture, whose colours (m, 3) are given; none without one."""
+    from matplotlib import colormaps
+
+    for name in (SIGNED_MAP, UNSIGNED_MAP):
+        shades = colormaps[name](np.linspace(0.0, 1.0, SHADES), bytes=True)[:, :3].astype(int)
+        away = np.array([np.abs(found.astype(int) - shade).max(axis=1).min() for shade in shades])
+        if np.mean(away <= ROUNDING) > 0.5:
+            return shades
+    return np.zeros((0, 3), dtype=int)
+
+
+def _reduced(frame: np.ndarray, colours: Image) -> Image:
+    """A frame in the colours of a palette."""
+    from PIL.Image import Dither
+
+    return _picture(frame).quantize(palette=colours, dither=Dither.NONE)
+
+
+def _write_gif(pictures: Iterator[Image], file: BinaryIO, fps: float) -> None:
+    """Write an animated picture that repeats."""
+    first = next(pictures)
+    duration = 10 * max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
+    looks = {"save_all": True, "append_images": pictures, "duration": duration, "loop": 0, "optimize": False}
+    first.save(file, "gif", **looks)

@@ -1,18 +1,22 @@
-"""The tables of a page: runs, changed keys, monitors, sides, energies, times, versions and estimated errors."""
+"""The runs of a page, and its tables: changed keys, monitors, sides, energies, times, versions, estimated errors."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from dembound.boundaries.description import FACTORS
-from dembound.plot.continuum import GROUP
+from dembound.errors import CaseError, RecordError
+from dembound.kinds import kind_of_record
+from dembound.motion.kind import Kind
+from dembound.plot.disks import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
-from dembound.report.runs import ReportedRun
 from dembound.results.histories import KEY, entries
-from dembound.results.reader import laws_in_words, open_record
-from dembound.results.summary import end_in_words
+from dembound.results.reader import laws_in_words, open_record, record_names, understood
+from dembound.results.results import Results
+from dembound.results.summary import end_in_words, read_summary
 from dembound.words import Entries, percent
 
 NONE = "–"
@@ -28,15 +32,21 @@ class Table:
     rows: Sequence[Sequence[str]]
 
 
-def side_by_side(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
-    """A table with a column for each run, and a row for each entry that any of them has."""
+def side_by_side(
+    title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries], *, different: bool = False
+) -> Table | None:
+    """A table with a column for each run, and a row for each entry that any of them has; None without rows.
+
+    different : only entries in which the runs differ.
+    """
     found = [dict(entries(run)) for run in runs]
     names = dict.fromkeys(name for each in found for name in each)
     rows = [[name, *(each.get(name, NONE) for each in found)] for name in names]
-    return Table(title, ["", *(run.name for run in runs)], rows)
+    rows = [row for row in rows if not different or len(set(row[1:])) > 1]
+    return Table(title, ["", *(run.name for run in runs)], rows) if rows else None
 
 
-def overview(runs: Sequence[ReportedRun]) -> Table:
+def overview(runs: Sequence[ReportedRun]) -> Table | None:
     """Table of the runs: case, contents, and how each run ended."""
     return side_by_side("Runs", runs, _overview)
 
@@ -80,13 +90,8 @@ def _contents(run: ReportedRun) -> Iterator[str]:
 
 def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
     """The keys of the cases in which the runs differ; None for one run or without differences."""
-    found = [dict(_flat(run.summary.get("keys", {}))) for run in runs]
-    names = dict.fromkeys(name for each in found for name in each)
-    different = [name for name in names if len({each.get(name, NONE) for each in found}) > 1]
-    if not different:
-        return None
-    rows = [[name, *(each.get(name, NONE) for each in found)] for name in different]
-    return Table("Keys of the cases that differ", ["", *(run.name for run in runs)], rows)
+    title = "Keys of the cases that differ"
+    return side_by_side(title, runs, lambda run: _flat(run.summary.get("keys", {})), different=True)
 
 
 def _flat(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
@@ -179,7 +184,7 @@ def _each(side: Mapping[str, Any], key: str) -> str:
 
 def energies(runs: Sequence[ReportedRun]) -> Table | None:
     """The last entries of the energy ledgers; None without summaries."""
-    return _or_none(side_by_side("Energy at the end", runs, _energies))
+    return side_by_side("Energy at the end", runs, _energies)
 
 
 def _energies(run: ReportedRun) -> Entries:
@@ -204,7 +209,7 @@ def _joules(energy: float, run: ReportedRun) -> str:
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:
     """Seconds by part of each run, rate and RAM; None without summaries."""
-    return _or_none(side_by_side("Where the time went", runs, _time))
+    return side_by_side("Where the time went", runs, _time)
 
 
 def _time(run: ReportedRun) -> Entries:
@@ -219,7 +224,7 @@ def _time(run: ReportedRun) -> Entries:
     yield "memory", f"{summary['memory_bytes'] / 1e6:.0f} MB"
 
 
-def versions(runs: Sequence[ReportedRun]) -> Table:
+def versions(runs: Sequence[ReportedRun]) -> Table | None:
     """The version and the seed of each run, and from where it was resumed."""
     return side_by_side("Versions", runs, _version)
 
@@ -234,7 +239,7 @@ def _version(run: ReportedRun) -> Entries:
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
     """Estimated errors, RMS over RMS, of the runs that have them; None without any."""
-    return _or_none(side_by_side("Estimated errors", runs, _estimated))
+    return side_by_side("Estimated errors", runs, _estimated)
 
 
 def _estimated(run: ReportedRun) -> Entries:
@@ -243,5 +248,66 @@ def _estimated(run: ReportedRun) -> Entries:
         yield from entries(run.summary[KEY])
 
 
-def _or_none(table: Table) -> Table | None:
-    return table if table.rows else None
+@dataclass(frozen=True)
+class ReportedRun:
+    """A run: its record, a unique name, its kind, its results, and its summary.
+
+    The summary is empty for a run that is not complete.
+    """
+
+    record: Path
+    name: str
+    kind: Kind[Any, Any]
+    results: Results
+    summary: Mapping[str, Any]
+
+    @property
+    def has_histories_alone(self) -> bool:
+        """Whether the record has only histories of monitors, exact or superposed from a library, and no body."""
+        return len(self.results.particles) == 0
+
+    @property
+    def is_bar(self) -> bool:
+        """Whether the record is that of a bar."""
+        return self.kind.name == "bar"
+
+
+def read_runs(records: Sequence[Path]) -> list[ReportedRun]:
+    """The runs of a page.
+
+    Raises CaseError or RecordError, with one line for each record that cannot be read, is not that of a run, or is of
+    another kind than the first.
+    """
+    found: list[tuple[Path, Kind[Any, Any], Results, Mapping[str, Any]]] = []
+    errors: list[CaseError] = []
+    for record in records:
+        try:
+            found.append((record, *_read(record)))
+        except CaseError as error:
+            errors.append(error)
+    if errors:
+        failure = RecordError if all(isinstance(error, RecordError) for error in errors) else CaseError
+        raise failure([line for error in errors for line in str(error).splitlines()])
+    kinds = sorted({kind.plural for _, kind, _, _ in found})
+    if len(kinds) > 1:
+        raise CaseError(
+            [f"RESULTS: holds runs of {' and of '.join(kinds)}, which have no page in common; name one kind"]
+        )
+    names = record_names(records)
+    return [
+        ReportedRun(record, name, kind, results, summary)
+        for name, (record, kind, results, summary) in zip(names, found, strict=True)
+    ]
+
+
+def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
+    """Kind, results and summary of a record."""
+    if record.name == "calibration.h5":
+        raise CaseError([f"{record}: is of a calibration; pages and movies are of runs"])
+    kind, results = kind_of_record(record), Results(record)
+    if record.name != "run.h5" or not (record.parent / "summary.json").is_file():
+        return kind, results, {}
+    summary = read_summary(record.parent)
+    with understood(record):
+        _ = summary["version"]  # which every summary has
+        return kind, results, dict(summary)

@@ -67,7 +67,6 @@ def require_readable(file: h5py.File) -> None:
 def require_finite(file: h5py.File) -> None:
     """Raise RecordError for the first number of the motion in a record that is not finite."""
     import h5py
-    import numpy as np
 
     def look_into(name: str, item: h5py.Group | h5py.Dataset) -> None:
         if not isinstance(item, h5py.Dataset) or item.dtype.kind != "f" or name.partition("/")[0] not in MOTION:
@@ -83,7 +82,6 @@ def require_finite(file: h5py.File) -> None:
 def require_places(file: h5py.File) -> None:
     """Raise RecordError for particles without size, and for monitors of particles that the record does not have."""
     import h5py
-    import numpy as np
 
     particles = file.get("particles")
     if not isinstance(particles, h5py.Group) or "position" not in particles:

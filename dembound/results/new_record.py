@@ -192,7 +192,7 @@ def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Seq
         write(group, name, values, unit)
     for name, (values, unit) in ({} if scene.beside is None else scene.beside.columns).items():
         write(file.require_group("continuum"), name, values, unit)
-    _write_inputs(file, scene)
+    write_inputs(file, scene.case.files)
     _make_histories(file, scene)
     _write_boundaries(file, scene, sides)
     make(file.create_group("cracks"), CRACKS)
@@ -239,10 +239,10 @@ def _make_energy(file: h5py.File, scene: Scene, sides: Sequence[str]) -> None:
         make(file.create_group(f"energy/sides/{side}"), [(name, (), "f8", unit) for name in SideEntry._fields])
 
 
-def _write_inputs(file: h5py.File, scene: Scene) -> None:
-    """The texts of the files that the case refers to, with their paths in it."""
+def write_inputs(file: h5py.File, files: Mapping[str, str]) -> None:
+    """The texts of the files that a case refers to, by their paths in it."""
     group = file.create_group("inputs")
-    for number, (path, content) in enumerate(scene.case.files.items()):
+    for number, (path, content) in enumerate(files.items()):
         write(group, str(number), np.frombuffer(content.encode(), dtype=np.uint8), "UTF-8")
         describe(group[str(number)], {"path": path})
 

@@ -123,7 +123,7 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
         groups: Mapping[str, h5py.Group] = file.get("histories", {})
         return {
             name: {
-                "particle": _particle(group),
+                "particle": None if group.attrs["particle"] == NO_PARTICLE else int(group.attrs["particle"]),
                 "position": group.attrs["position"].tolist(),
                 **arrival(group["time"][:], group["velocity"][:, :2]),
                 "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
@@ -131,12 +131,6 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
             }
             for name, group in groups.items()
         }
-
-
-def _particle(group: h5py.Group) -> int | None:
-    """Number of the particle of a history; None in a continuum."""
-    number = int(group.attrs["particle"])
-    return None if number == NO_PARTICLE else number
 
 
 def arrival(time: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:

@@ -164,7 +164,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
     if files == "none":
         return
     with open_record(run) as file:
-        snapshots = {_number_of(snapshot): snapshot for snapshot in snapshots_of(file)}
+        snapshots = {str(snapshot.name).rsplit("/", maxsplit=1)[-1]: snapshot for snapshot in snapshots_of(file)}
         if not snapshots:
             return
         digits = max(map(len, snapshots))
@@ -185,11 +185,6 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
     write_text(folder / "view.py", kind.view_script)
-
-
-def _number_of(snapshot: h5py.Group) -> str:
-    """The number of a snapshot, as it is written in the record."""
-    return str(snapshot.name).rsplit("/", maxsplit=1)[-1]
 
 
 @contextmanager

@@ -124,20 +124,16 @@ def require_replaceable(folder: Folder, case: Case) -> None:
         own = {"origin": case.origin, "kind": kind_of(case).name}
         if different := [name for name in there if there[name] != own[name]]:
             whose = {"origin": "case {}", "kind": "a case of {}"}[different[0]]
-            raise CaseError(
-                [
-                    f"{path}: has results of {whose.format(there[different[0]])}, which this run of "
-                    f"{whose.format(own[different[0]])} would replace; give another --name or --output, or remove them"
-                ]
-            )
+            raise _taken(path, whose.format(there[different[0]]), whose.format(own[different[0]]))
         source, file = recorded_source(texts, folder.final.parent), file_of(case)
         if source is not None and file.is_file() and not file.samefile(source[0]):
-            raise CaseError(
-                [
-                    f"{path}: has results of {source[0]}, which this run of {file} would replace; give another --name "
-                    "or --output, or remove them"
-                ]
-            )
+            raise _taken(path, source[0], file)
+
+
+def _taken(path: Path, there: object, own: object) -> CaseError:
+    """The error for a folder that has results of another case or kind than those of a run."""
+    advice = "give another --name or --output, or remove them"
+    return CaseError([f"{path}: has results of {there}, which this run of {own} would replace; {advice}"])
 
 
 def file_of_record(record: Path) -> Path | None:

@@ -19,7 +19,7 @@ of the pulse with β0 is compared with what it returns with the matched factor, 
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -45,6 +45,7 @@ from dembound.studies.strip import (
     linear_medium,
     returned,
     short_strip,
+    with_beta,
 )
 from dembound.version import __version__
 from dembound.waves import Cosine
@@ -171,69 +172,99 @@ def calibrate(
     Raises CaseError when the side has no dashpots, keeps springs beside them, its motion is held, or its layers need
     different factors, RunError when β does not converge.
     """
-    method, start, tolerance, full = how.method, how.start, how.tolerance, how.full
-    if not 0.0 < tolerance < np.inf:
-        raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
+    if not 0.0 < how.tolerance < np.inf:
+        raise CaseError([f"--tolerance: is {how.tolerance:g}, must be above 0"])
     motion = calibrated_motion(case, side, motion)
     alone, left_out = in_one_layer(case, side, motion)
     plain, more = linear_medium(alone)
-    left_out += more
-    table = plain.side(side)
     pulse = calibration_pulse(alone, side, motion)
-    kind: Literal["absorbing", "input"] = "input" if table.waves else "absorbing"
-    if method == "homogenised":
+    kind: Literal["absorbing", "input"] = "input" if plain.side(side).waves else "absorbing"
+    found = Calibration(case, side, motion, how.method, kind, pulse.peak(), [])
+    if how.method == "homogenised":
         scene = build(alone)
-        beta = float(f"{homogenised_beta(scene, side, motion):.{HOMOGENISED_DIGITS}g}")
-        return Calibration(case, side, motion, method, kind, pulse.peak(), [], result=beta, particles=scene.count)
-    strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
-    scene = build(strip)
-    require_dashpots_alone(scene, side)
-    body = scene if full else build(in_strip(plain, normal_axis(side), SIDE * plain.packing.radius, keeps=True))
-    matched = homogenised_beta(body, side, motion)
-    across = 1 - normal_axis(side)
-    is_narrow = strip.packing.copies[across] == plain.packing.copies[across]
-    share = homogenised_beta(scene, side, motion) / matched if is_narrow else 1.0
-    found = Calibration(
-        case=case,
-        side=side,
-        motion=motion,
-        method=method,
-        kind=kind,
-        incident=pulse.peak(),
-        shortened=[*shortened, *reduced(scene).scene.reduced, *left_out],
-        particles=scene.count,
-    )
-    predicted = start is None and table.factors[motion] == "matched"
-    beta = factors_in(body if is_narrow else scene, side)[motion] if start is None else start
+        found.result, found.particles = _rounded(homogenised_beta(scene, side, motion)), scene.count
+        return found
+    passes = _Passes(plain, pulse, found, how.full, report)
+    found.shortened += [*left_out, *more]
+    beta = passes.own if how.start is None else how.start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
-    time_step, _ = choose_step(scene)  # it does not depend on β: centred dashpots do not reduce the stability limit
-
-    def add_pass(beta: float) -> None:
-        trial = with_boundaries(scene, _with_beta(strip, side, motion, share * beta))
-        outgoing, steps = _pass(trial, time_step, found, pulse)
-        found.beta.append(beta)
-        found.outgoing.append(outgoing)
-        found.steps += steps
-        if report is not None:
-            report(found)
-
+    predicted = how.start is None and plain.side(side).factors[motion] == "matched"
     for _ in range(MOST_PASSES):
-        add_pass(beta)
-        if abs(found.ratio[-1] - 1.0) < tolerance and not (predicted and len(found.beta) == 1):
+        passes.add(beta)
+        if abs(found.ratio[-1] - 1.0) < how.tolerance and not (predicted and len(found.beta) == 1):
             found.result = known(beta, found.ratio[-1])
-            if method == "impedance" and abs(found.result / matched - 1.0) > tolerance:
-                usual = float(f"{matched:.{HOMOGENISED_DIGITS}g}")
-                if _returns_less(found, plain, pulse, usual):
-                    add_pass(usual)
-                    found.result = usual
-                    found.compared += ", which is kept"
+            if how.method == "impedance" and abs(found.result / passes.matched - 1.0) > how.tolerance:
+                passes.keep_matched_if_better()
             return found
         beta = _next_beta(found)
     raise RunError(
         f"calibration of {side} did not converge in {MOST_PASSES} passes: M_out/M_in = {found.ratio[-1]:.5f} "
         f"at {found.factor} = {found.beta[-1]:.5f}"
     )
+
+
+class _Passes:
+    """The passes of a calibration, in a strip of the case or in its whole scene.
+
+    Parameters
+    ----------
+    plain : the case from `linear_medium`. pulse : that meets the side. found : the calibration, to which passes are
+    added. full : whether they are in the whole scene. report : called after each.
+
+    Attributes
+    ----------
+    own, matched : factors of the case, its own one and that from brick and side.
+
+    Raises CaseError when the side keeps springs beside its dashpots, or the whole scene is too short.
+    """
+
+    def __init__(self, plain: DiskCase, pulse: Cosine, found: Calibration, full: bool, report: Report | None) -> None:
+        self._plain, self._pulse, self._found, self._report = plain, pulse, found, report
+        side, motion = found.side, found.motion
+        self._strip, shortened = (full_scene if full else short_strip)(plain, side, motion, pulse)
+        self._scene = build(self._strip)
+        require_dashpots_alone(self._scene, side)
+        axis = normal_axis(side)
+        body = self._scene if full else build(in_strip(plain, axis, SIDE * plain.packing.radius, keeps=True))
+        self.matched = homogenised_beta(body, side, motion)
+        is_narrow = self._strip.packing.copies[1 - axis] == plain.packing.copies[1 - axis]
+        self._share = homogenised_beta(self._scene, side, motion) / self.matched if is_narrow else 1.0
+        self.own = factors_in(body if is_narrow else self._scene, side)[motion]
+        # it does not depend on β: centred dashpots do not reduce the stability limit
+        self._time_step, _ = choose_step(self._scene)
+        found.shortened += [*shortened, *reduced(self._scene).scene.reduced]
+        found.particles = self._scene.count
+
+    def add(self, beta: float) -> None:
+        """Run a pass with a factor, and add it to the calibration."""
+        found = self._found
+        case = with_beta(self._strip, found.side, found.motion, self._share * beta)
+        outgoing, steps = _pass(with_boundaries(self._scene, case), self._time_step, found, self._pulse)
+        found.beta.append(beta)
+        found.outgoing.append(outgoing)
+        found.steps += steps
+        if self._report is not None:
+            self._report(found)
+
+    def keep_matched_if_better(self) -> None:
+        """Compare what the side returns of the pulse with the result and with the matched factor, and keep the better.
+
+        Both shares are put into words.
+        """
+        found, usual = self._found, _rounded(self.matched)
+        own, other = returned(self._plain, found.side, found.motion, self._pulse, [found.result, usual])
+        with_own, with_usual = (percent(share, 3) for share in (own, other))
+        found.compared = f"returned: {with_own} with {found.result:g}, {with_usual} with the matched {usual:g}"
+        if other < own:
+            self.add(usual)
+            found.result = usual
+            found.compared += ", which is kept"
+
+
+def _rounded(beta: float) -> float:
+    """A factor from the brick alone, to the digits that are known."""
+    return float(f"{beta:.{HOMOGENISED_DIGITS}g}")
 
 
 def known(beta: float, ratio: float) -> float:
@@ -244,17 +275,6 @@ def known(beta: float, ratio: float) -> float:
     change = beta * abs(ratio / (2.0 - ratio) - 1.0)
     largest = MOST_DIGITS - 1 - math.floor(math.log10(beta))
     return round(beta, largest if change == 0.0 else min(largest, -math.floor(math.log10(change))))
-
-
-def _returns_less(found: Calibration, plain: DiskCase, pulse: Cosine, usual: float) -> bool:
-    """Whether the side returns less of the pulse with the matched factor than with the result, both put into words.
-
-    plain : the case from `linear_medium`. usual : the matched factor.
-    """
-    own, other = returned(plain, found.side, found.motion, pulse, [found.result, usual])
-    with_own, with_usual = (percent(share, 3) for share in (own, other))
-    found.compared = f"returned: {with_own} with {found.result:g}, {with_usual} with the matched {usual:g}"
-    return other < own
 
 
 def _next_beta(found: Calibration) -> float:
@@ -322,8 +342,3 @@ def _must_move(case: DiskCase, side: str, motion: Motion) -> None:
     name = "xy"[axis_of_motion(side, motion)]
     if name in case.motion.held:
         raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
-
-
-def _with_beta(case: DiskCase, side: str, motion: Motion, beta: float) -> DiskCase:
-    table = case.boundary[side].with_factors({motion: beta})
-    return replace(case, boundary={**case.boundary, side: table})

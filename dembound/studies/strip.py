@@ -174,8 +174,12 @@ def _beside(case: DiskCase, axis: int) -> list[Boundary]:
 
 def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:
     """The wave speed (m/s) of the packing along an axis."""
-    ground = ground_of(case)
-    return ground.wave_speeds(axis)[0 if motion == "p" else 1]
+    return ground_of(case).wave_speeds(axis)[0 if motion == "p" else 1]
+
+
+def with_beta(case: DiskCase, side: str, motion: Motion, beta: float) -> DiskCase:
+    """The case with another factor of a side."""
+    return replace(case, boundary={**case.boundary, side: case.side(side).with_factors({motion: beta})})
 
 
 DEEP, LONG, WINDOW = 0.1, 0.65, 1.1
@@ -196,7 +200,7 @@ def returned(case: DiskCase, side: str, motion: Motion, pulse: Cosine, betas: Se
     axis = normal_axis(side)
     tables = {**case.boundary, side: case.side(side).at_rest()}
     case = driven(replace(case, boundary=tables), side, motion, pulse)
-    length = ground_of(case).wave_speeds(axis)[0 if motion == "p" else 1] * pulse.period
+    length = _speed_of(case, axis, motion) * pulse.period
     strip = in_strip(case, axis, LONG * length)
     duration = (strip.packing.extent[axis] / length + DEEP + WINDOW) * pulse.period
     copies = list(strip.packing.copies)
@@ -206,9 +210,7 @@ def returned(case: DiskCase, side: str, motion: Motion, pulse: Cosine, betas: Se
     time, incident = _at_section(farther, side, motion, within, duration)
     found = []
     for beta in betas:
-        table = strip.side(side).with_factors({motion: beta})
-        trial = replace(strip, boundary={**strip.boundary, side: table})
-        own, values = _at_section(trial, side, motion, within, duration)
+        own, values = _at_section(with_beta(strip, side, motion, beta), side, motion, within, duration)
         found.append(float(np.linalg.norm(np.interp(time, own, values) - incident) / np.linalg.norm(incident)))
     return found
 

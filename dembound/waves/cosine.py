@@ -5,15 +5,13 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.table import quantity
-from dembound.waves.wave import HANN_FADE, Shape
+from dembound.waves.wave import HANN_FADE, Pulse
 
 
-class Cosine(Shape):
+class Cosine(Pulse):
     """One smooth one-sided pulse: v = M/2 · (1 − cos 2πt/T) for 0 ≤ t ≤ T (Z eq. 12)."""
 
     type: Literal["cosine"]
-    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
         phase = 2.0 * math.pi * np.clip(since / self.period, 0.0, 1.0)
@@ -22,18 +20,6 @@ class Cosine(Shape):
     def _displacement_shape(self, since: np.ndarray) -> np.ndarray:
         phase = 2.0 * math.pi * np.clip(since / self.period, 0.0, 1.0)
         return self.period / (4.0 * math.pi) * (phase - np.sin(phase))
-
-    def peak_time(self) -> float:
-        """Time of the crest, half a period after the start, s."""
-        return self.start + 0.5 * self.period
-
-    def duration(self) -> float:
-        """Time from which the wave is over, s: one period after the start."""
-        return self.start + self.period
-
-    def dominant_frequency(self) -> float:
-        """1/T, Hz; the spectrum of a one-sided pulse is largest at zero and has its first zero at 2/T."""
-        return 1.0 / self.period
 
     def highest_frequency(self) -> float:
         """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz: 3.27/T."""

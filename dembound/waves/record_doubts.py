@@ -208,7 +208,7 @@ def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, turns: bool) ->
     anywhere = int(changes.argmax()), float(largest[-2]), LOUD
     for worst, others, least in (
         *([anywhere] if turns else []),
-        (_at_largest(changes, within), largest[-3], WIDE),
+        (int(np.where(within, changes, 0.0).argmax()), largest[-3], WIDE),
     ):
         if others > 0.0 and changes[worst] > max(least * peak, OUTSTANDING * others):
             flips = within[worst] and 2.0 * abs(values[worst] + values[worst + 1]) < changes[worst]
@@ -216,11 +216,6 @@ def _jump(times: np.ndarray, values: np.ndarray, peak: float, *, turns: bool) ->
             size = f"{changes[worst]:.4g}, {changes[worst] / others:.2g} times any other step"
             yield f"jumps by {size}, at {times[worst]:.4g} s: {cause}"
             return
-
-
-def _at_largest(changes: np.ndarray, within: np.ndarray) -> int:
-    """Index of the largest of the changes (k − 1,) within the motion."""
-    return int(np.where(within, changes, 0.0).argmax())
 
 
 def _offset(times: np.ndarray, values: np.ndarray) -> Iterator[str]:

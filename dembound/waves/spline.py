@@ -5,8 +5,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.roots import root
-from dembound.table import quantity
-from dembound.waves.wave import FADED, Shape
+from dembound.waves.wave import FADED, Pulse
 
 AREA = 3.0 / 8.0
 """Integral of the spline of unit height and unit length."""
@@ -18,7 +17,7 @@ All side lobes are below: the first is 0.217⁴ = 0.22 % of the crest.
 """
 
 
-class CubicSpline(Shape):
+class CubicSpline(Pulse):
     """v = M·16[G(τ) − 4G(τ−¼) + 6G(τ−½) − 4G(τ−¾) + G(τ−1)], τ = t/T, G(x) = x³ for x > 0, else 0 (Z eq. 19).
 
     One-sided on 0 ≤ t ≤ T with continuous velocity, acceleration and its rate.
@@ -29,7 +28,6 @@ class CubicSpline(Shape):
     """
 
     type: Literal["cubic_spline"]
-    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
         tau = np.clip(since / self.period, 0.0, 1.0)
@@ -39,18 +37,6 @@ class CubicSpline(Shape):
         tau = np.clip(since / self.period, 0.0, 1.0)
         near = 0.25 * _rise(np.minimum(tau, 1.0 - tau), 4)
         return self.period * np.where(tau <= 0.5, near, AREA - near)
-
-    def peak_time(self) -> float:
-        """Time of the crest, half a period after the start, s."""
-        return self.start + 0.5 * self.period
-
-    def duration(self) -> float:
-        """Time from which the wave is over, s: one period after the start."""
-        return self.start + self.period
-
-    def dominant_frequency(self) -> float:
-        """1/T, Hz; the spectrum, sinc⁴(fT/4), is largest at zero and has its first zero at 4/T."""
-        return 1.0 / self.period
 
     def highest_frequency(self) -> float:
         """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz: 2.95/T."""

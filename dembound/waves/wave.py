@@ -229,3 +229,21 @@ class Shape(Wave):
     @abstractmethod
     def _displacement_shape(self, since: np.ndarray) -> np.ndarray:
         """Integral of the velocity shape, s, at times since the start, s."""
+
+
+class Pulse(Shape):
+    """One smooth one-sided pulse whose length is a period, with its crest in the middle."""
+
+    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
+
+    def peak_time(self) -> float:
+        """Time of the crest, half a period after the start, s."""
+        return self.start + 0.5 * self.period
+
+    def duration(self) -> float:
+        """Time from which the wave is over, s: one period after the start."""
+        return self.start + self.period
+
+    def dominant_frequency(self) -> float:
+        """1/T, Hz; the spectrum of a one-sided pulse is largest at zero, and falls to its first zero at 2/T or 4/T."""
+        return 1.0 / self.period

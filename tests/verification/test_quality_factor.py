@@ -13,7 +13,7 @@ from dembound.exact.histories import DECAY
 from dembound.kinds import loads, with_changes
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
-from dembound.studies.noise import short_run
+from dembound.studies.stability import short_run
 
 DENSITY, SPEED = 2000.0, 400.0
 BELOW, ABOVE = 100.25, 300.25

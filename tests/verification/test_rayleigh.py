@@ -13,7 +13,7 @@ from dembound.kinds import loads, with_changes
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.studies.noise import short_run
+from dembound.studies.stability import short_run
 
 DENSITY, SPEED, HEIGHT, RADIUS = 2000.0, 400.0, 20.0, 0.25
 BAND, QUALITY = (10.0, 80.0), 10.0

@@ -19,7 +19,7 @@ import numpy as np
 
 from dembound.accuracy.of_disks.equal_sides import equal_sides, with_whole_cells
 from dembound.boundaries import Boundary
-from dembound.boundaries.intact import Keeping
+from dembound.boundaries.platen import Keeping
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.layer import Layer

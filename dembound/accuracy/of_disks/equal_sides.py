@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import BoundaryMedium, Edge, Motion, normal_axis
-from dembound.boundaries.intact import Keeping
+from dembound.boundaries.platen import Keeping
 from dembound.boundaries.support import Supports
 from dembound.boundaries.viscoelastic import Viscoelastic
 from dembound.boundaries.viscous import Viscous

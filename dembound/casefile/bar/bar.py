@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import ValidationError, model_validator
 
-from dembound.methods.fracture import Fracture
+from dembound.methods.rod import Fracture
 from dembound.table import LARGEST, SMALLEST, FileName, Table, quantity
 
 

@@ -10,8 +10,7 @@ from dembound.boundaries.edge import SIDES, is_far, plane_of
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.load import Load
 from dembound.casefile.messages import choices, corners, numbered, show
-from dembound.holes.floor import Floor, floor_beside
-from dembound.holes.hole import Hole
+from dembound.holes.hole import Floor, Hole, floor_beside
 from dembound.packings.base import TYPED, Extent, Packing
 from dembound.table import Box, Table, quantity
 

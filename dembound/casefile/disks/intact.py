@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from dembound.boundaries import OPPOSITE, Boundary, normal_axis
-from dembound.boundaries.intact import INTACT, Keeping
+from dembound.boundaries.platen import INTACT, Keeping
 from dembound.boundaries.viscous import Bearing, BearingDashpots
 from dembound.casefile.disks.material import STRENGTH_KEYS, Material
 from dembound.casefile.disks.static import Static

@@ -17,8 +17,7 @@ from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static, begins_stressed
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
-from dembound.holes.floor import Floor
-from dembound.holes.hole import Hole
+from dembound.holes.hole import Floor, Hole
 from dembound.packings.base import Packing
 from dembound.table import Box, Table, quantity
 

@@ -10,8 +10,7 @@ from dembound.boundaries.edge import SIDES, Edge, exposed, normal_axis, outer_ro
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.messages import numbered
 from dembound.errors import CaseError
-from dembound.holes.floor import Floor
-from dembound.holes.hole import Hole
+from dembound.holes.hole import Floor, Hole
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam
 from dembound.packings.cut import cut_contacts

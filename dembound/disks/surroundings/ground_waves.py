@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from dembound.boundaries.signals import Incident
+from dembound.boundaries.support import Incident
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.model import DiskCase
 from dembound.continuum.axis import Rule

@@ -21,7 +21,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.edges import ON_IT
 from dembound.disks.surroundings.settings import Settings, least_element, mesh_of, settings_of
 from dembound.errors import CaseError
-from dembound.holes.floor import Floor
+from dembound.holes.hole import Floor
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
 

@@ -14,7 +14,7 @@ import numpy as np
 from dembound.bar.layers import ENDS, EndLayer
 from dembound.bar.scene import BarScene, build_bar, end_supports
 from dembound.boundaries.matched_layer import MatchedLayer
-from dembound.boundaries.signals import Signal
+from dembound.boundaries.support import Signal
 from dembound.casefile.bar import BarCase
 from dembound.formulas.bars.chain import Chain, Frequencies, Response, observed_near
 from dembound.formulas.bars.rods import Rods, Window, needed

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.boundaries.signals import Signal
+from dembound.boundaries.support import Signal
 from dembound.casefile.bar.model import BarCase
 from dembound.formulas.bars.chain import Link, velocities
 from dembound.methods.rod import Range, Rod

@@ -1,1 +1,1 @@
-"""Measured signals: columns of text files from oscilloscopes, their units, and gauges in the records of runs."""
+"""Measured signals: columns of text files from oscilloscopes, and their units."""

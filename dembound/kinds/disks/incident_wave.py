@@ -19,7 +19,7 @@ import numpy as np
 
 from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.edge import OPPOSITE
-from dembound.boundaries.signals import Incident, Signal
+from dembound.boundaries.support import Incident, Signal
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.material.layered import LayeredGround, Zone
 from dembound.disks.scene import DiskScene, with_waves

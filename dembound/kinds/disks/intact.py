@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.boundaries.intact import Keeping
+from dembound.boundaries.platen import Keeping
 from dembound.casefile.disks.intact import can_break, keeps_forces
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of

@@ -199,8 +199,8 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
         """The scene with disks coloured by a field, or with lines for the forces of contacts."""
-        from dembound.plot.chains import plot_chains
         from dembound.plot.field import FORCES
+        from dembound.plot.packing import plot_chains
         from dembound.plot.scene import plot_scene
 
         if field == FORCES:

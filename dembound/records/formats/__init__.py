@@ -11,16 +11,13 @@ from dembound.errors import CaseError
 from dembound.gauge.reading.scope import content_of, decoded
 from dembound.records.channel import Record
 from dembound.records.formats.cosmos import Cosmos
-from dembound.records.formats.esm import Esm
-from dembound.records.formats.format import Format
 from dembound.records.formats.geonet import Geonet
-from dembound.records.formats.knet import Knet
-from dembound.records.formats.networks import Cwb, Nsmn, Unam
+from dembound.records.formats.networks import Cwb, Esm, Knet, Nsmn, Unam
 from dembound.records.formats.numbers import MOTIONS, Flaw, Unknown
 from dembound.records.formats.peer import Peer
 from dembound.records.formats.seismic import is_sac_in_numbers, read_binary
 from dembound.records.formats.smc import Smc
-from dembound.records.formats.source import USUAL, Reading, Source
+from dembound.records.formats.source import USUAL, Format, Reading, Source
 from dembound.records.formats.text_columns import TextColumns
 from dembound.records.formats.volumes import Volumes
 from dembound.table import with_registered

@@ -8,9 +8,8 @@ import re
 from collections.abc import Sequence
 
 from dembound.records.channel import Channel, Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import COUNT, Flaw, rows_of
-from dembound.records.formats.source import END, Source
+from dembound.records.formats.source import END, Format, Source
 from dembound.waves.unit_names import unit_named
 
 FIRST = re.compile(r".*\(format v[\d.]+ with\s+(\d{1,3}) text lines\)", re.IGNORECASE)

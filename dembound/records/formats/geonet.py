@@ -9,9 +9,8 @@ import re
 from collections.abc import Sequence
 
 from dembound.records.channel import Channel, Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import COUNT, DECIMAL, Flaw, rows_of
-from dembound.records.formats.source import SAME, Source
+from dembound.records.formats.source import SAME, Format, Source
 
 HEADER, TEXTS, INTEGERS, REALS = 26, 16, 4, 6
 LAYOUT = "(10f8.1)"

@@ -1,7 +1,11 @@
-"""Texts of columns, a component each, of three networks: Taiwan (CWB), Turkey (NSMN, AFAD) and Mexico (UNAM).
+"""Texts of five networks, of which each file is one of columns, a component each, or of the values of one component.
 
-The header states the layout. CWB: lines "#Key: value" and times in the first column. NSMN: lines "KEY : value" and a
-line of names. UNAM: lines in format 2.0 of the Mexican database of strong motions, values of channels between slashes.
+The header states the layout. CWB (Taiwan): lines "#Key: value" and times in the first column. NSMN (Turkey, AFAD):
+lines "KEY : value" and a line of names. UNAM (Mexico): lines in format 2.0 of the Mexican database of strong motions,
+values of channels between slashes. ESM and ITACA (Europe, Italy): 64 lines "KEY: value" in format DYNA (Luzi et al.,
+Seismological Research Letters 87, 987, 2016; each file names its version in HEADER_FORMAT), then one value in a line.
+K-NET and KiK-net (NIED, Japan): 17 lines of header, then integers of one component; these have an offset, which stays
+in the values, and "Max. Acc." in the header is without it.
 """
 
 import re
@@ -10,9 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from dembound.records.channel import Channel, Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import COUNT, DECIMAL, Flaw, number_of
-from dembound.records.formats.source import SAME, Source
+from dembound.records.formats.source import SAME, Format, Source
+from dembound.waves.unit_names import unit_named
 
 GAL = 0.01
 """m/s²."""
@@ -155,3 +159,80 @@ def _slashed(source: Source, key: str) -> list[str]:
     """The values of all channels behind keys of UNAM's header, "/V/N00E/N90E" of the first six and of others."""
     found = (re.match(rf"{key}[^:]*C\d+-C\d+[^:]*:(.*)", line) for line in source.lines[:LONGEST])
     return [text.strip() for each in found if each for text in each[1].strip().split("/")[1:] if text.strip()]
+
+
+KEY = re.compile(r"[A-Z][A-Z0-9_/^ ]*:")
+
+
+class Esm(Format):
+    """Accelerations, velocities or displacements, by DATA_TYPE."""
+
+    name = "ESM/ITACA ASC"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the header has keys of the format."""
+        keys = {line.partition(":")[0] for line in lines[: _begin(lines)]}
+        return {"SAMPLING_INTERVAL_S", "NDATA", "UNITS"} <= keys
+
+    def read(self, source: Source) -> Record:
+        """The component of the file."""
+        begin = _begin(source.lines)
+
+        def stated(key: str, pattern: str = r"(.*?)") -> str:
+            return str(source.found(rf"^{key}:[ \t]*{pattern}[ \t]*$", 0, begin, key)[1])
+
+        texts = {key: value.strip() for key, _, value in (line.partition(":") for line in source.lines[:begin])}
+        unit = source.measured(stated("UNITS"), texts.get("DATA_TYPE", ""))
+        key = next((key for key in texts if re.match(r"PG[AVD]_", key)), "")
+        of_peak, peak = unit_named(key[4:]), texts.get(key, "")
+        if of_peak is not None and of_peak.size != unit.size and (stated_peak := number_of(peak)) is not None:
+            peak = f"{stated_peak * of_peak.size / unit.size:.6g}"
+        values, step = source.free(begin, int(stated("NDATA", COUNT))), stated("SAMPLING_INTERVAL_S", rf"({DECIMAL})")
+        length = texts.get("DURATION_S", "")
+        channel = source.channel(texts.get("STREAM", ""), unit, values, float(step), peak=peak, length=length)
+        names = (texts.get(key, "") for key in ("STATION_CODE", "STATION_NAME", "EVENT_NAME", "EVENT_DATE_YYYYMMDD"))
+        return Record("ESM/ITACA ASC", ", ".join(filter(None, names)), (channel,))
+
+
+def _begin(lines: Sequence[str]) -> int:
+    """Index of the first line that is no key."""
+    return next((at for at, line in enumerate(lines) if not KEY.match(line)), len(lines))
+
+
+HEADER = 17
+KIK_NET = {
+    str(number): f"{direction} ({place})"
+    for number, (place, direction) in enumerate(
+        ((place, direction) for place in ("borehole", "surface") for direction in ("N-S", "E-W", "U-D")), start=1
+    )
+}
+"""Components by their numbers in files of KiK-net."""
+
+
+class Knet(Format):
+    """Values are integers times the "Scale Factor", as 3920(gal)/6182761."""
+
+    name = "K-NET/KiK-net"
+
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the header begins with the origin time and has a sampling frequency."""
+        return lines[0].startswith("Origin Time") and any(line.startswith("Sampling Freq") for line in lines[:HEADER])
+
+    def read(self, source: Source) -> Record:
+        """The component of the file."""
+
+        def stated(key: str, pattern: str = rf"({DECIMAL})") -> tuple[str, ...]:
+            found = source.found(rf"^{key}\s+{pattern}", 0, HEADER, key.replace("\\", ""))
+            return tuple(map(str, found.groups()))
+
+        (rate,), (duration,) = stated(r"Sampling Freq\(Hz\)"), stated(r"Duration Time\(s\)")
+        full, unit, steps = stated("Scale Factor", rf"({DECIMAL})\((\w+)\)/({DECIMAL})")
+        (station,), (direction,) = stated("Station Code", r"(\S+)"), stated(r"Dir\.", r"(\S+)")
+        (peak,), (origin,) = stated(r"Max\. Acc\. \(gal\)"), stated("Origin Time", r"(\S.*\S)")
+        if not (0.0 < float(rate) <= 1e6 and 0.0 < float(duration) <= 1e6 and float(steps) > 0.0):
+            raise Flaw("sampling frequency, duration and scale factor must be positive")
+        values = source.free(HEADER, round(float(duration) * float(rate))) * (float(full) / float(steps))
+        found = float(np.abs(values - values.mean()).max())
+        component, step = KIK_NET.get(direction, direction), 1.0 / float(rate)
+        channel = source.channel(component, source.measured(unit), values, step, peak=peak, found=found)
+        return Record("KiK-net" if direction in KIK_NET else "K-NET", f"{station}, earthquake of {origin}", (channel,))

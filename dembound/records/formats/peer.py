@@ -8,9 +8,8 @@ import re
 from collections.abc import Sequence
 
 from dembound.records.channel import Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import COUNT, DECIMAL, SECONDS, Flaw, number_of, quantity_named, seconds_of
-from dembound.records.formats.source import Source
+from dembound.records.formats.source import Format, Source
 
 UNITS = re.compile(r"\bunits\s+(?:of|are|is|:|=)?\s*[(\[]?\s*([^\s.,;)\]]+)", re.IGNORECASE)
 SAMPLES = re.compile(

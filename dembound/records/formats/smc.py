@@ -10,9 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from dembound.records.channel import Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import Flaw
-from dembound.records.formats.source import Source
+from dembound.records.formats.source import Format, Source
 
 FIRST = re.compile(r"\s*\d\s+((?:UN)?CORRECTED ACCELEROGRAM|VELOCITY|DISPLACEMENT|RESPONSE|FOURIER)\b")
 UNITS = {"ACCELEROGRAM": "cm/s²", "VELOCITY": "cm/s", "DISPLACEMENT": "cm"}

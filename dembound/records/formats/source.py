@@ -1,16 +1,18 @@
-"""The text of a file of ground motion, its numbers, and the channels made of them."""
+"""The base of every format; the text of a file of ground motion, its numbers, and the channels made of them."""
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
 from dembound.gauge.reading.signal import evenly
-from dembound.records.channel import Channel
+from dembound.records.channel import Channel, Record
 from dembound.records.formats.numbers import (
     MOTIONS,
     NUMBER,
@@ -283,3 +285,18 @@ def _sound(numbers: np.ndarray) -> np.ndarray:
     if not (sound := np.abs(numbers) <= LARGEST).all():
         raise Flaw(f"sample {int(np.argmin(sound)) + 1} is {numbers[np.argmin(sound)]:g}, must be finite")
     return numbers
+
+
+class Format(ABC):
+    """A format of text files; derived ones are registered under the entry point group "dembound.records"."""
+
+    name: ClassVar[str]
+    """As messages print it, with its versions."""
+
+    @abstractmethod
+    def recognises(self, lines: Sequence[str]) -> bool:
+        """Whether the lines of a file, at least one, begin as those of this format."""
+
+    @abstractmethod
+    def read(self, source: Source) -> Record:
+        """The channels of a file that is recognised; raises `Flaw` for what cannot be read."""

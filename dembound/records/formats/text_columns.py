@@ -21,7 +21,6 @@ from dembound.records.formats.column_checks import (
     require_no_card,
     require_order,
 )
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import (
     BARE,
     COUNT,
@@ -33,7 +32,7 @@ from dembound.records.formats.numbers import (
     require_increasing,
     seconds_of,
 )
-from dembound.records.formats.source import SAME, Source
+from dembound.records.formats.source import SAME, Format, Source
 from dembound.records.formats.table import EITHER, OTHER, Head, Table, head_of, increases, quantity_of, read_table
 from dembound.table import LARGEST, SMALLEST
 from dembound.waves.unit_names import unit_named

@@ -15,9 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.records.channel import Channel, Record
-from dembound.records.formats.format import Format
 from dembound.records.formats.numbers import COUNT, DECIMAL, Flaw, number_of, rows_of, with_rounding
-from dembound.records.formats.source import END, Source
+from dembound.records.formats.source import END, Format, Source
 from dembound.waves.unit_names import Named, unit_named
 
 BLOCK = re.compile(

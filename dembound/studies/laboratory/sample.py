@@ -263,14 +263,8 @@ def sample_of(
         given = " ".join(f"--set material.{key}={getattr(case.material, key):g}" for key in lacking)
         raise CaseError([f"material: a sample has no layers; give what only layers have, such as {given}"], case.name)
     if width is None and packing.expected_disks > MOST_OWN:
-        diameter = 2.0 * packing.radius
-        raise CaseError(
-            [
-                f"--width: is missing, and the case has {packing.expected_disks:,.0f} disks; give the width of the "
-                f"sample (m), such as --width {40.0 * diameter:.3g}, 40 diameters"
-            ],
-            case.name,
-        )
+        said = f"is missing, and the case has {packing.expected_disks:,.0f} disks; give the width of the sample (m)"
+        raise CaseError([f"--width: {said}, such as --width {80.0 * packing.radius:.3g}, 40 diameters"], case.name)
     across = packing.extent[0] if width is None else width
     if test == "brazilian" and height is not None:
         raise CaseError(["--height: is not of a brazilian test, whose sample is round; give --width"])

@@ -218,13 +218,9 @@ def _require_within(ratio: float, least: float, most: float, here: str = "") -> 
     here : addition to the message, on this packing.
     """
     if ratio > most:
-        raise CaseError(
-            [
-                f"--ucs over --tension: is {ratio:.3g}, parallel bonds of one strength reach about {MOST_RATIO:g}, "
-                f"scatter of their strengths about {MOST_SCATTERED:g}{here}; "
-                'material.pb_scatter = {type = "normal", deviation = 0.5}'
-            ]
-        )
+        reach = f"parallel bonds of one strength reach about {MOST_RATIO:g}, scatter of their strengths about"
+        recipe = 'material.pb_scatter = {type = "normal", deviation = 0.5}'
+        raise CaseError([f"--ucs over --tension: is {ratio:.3g}, {reach} {MOST_SCATTERED:g}{here}; {recipe}"])
     if ratio < least:
         what = f"must be {least:.3g} or more for parallel bonds{here}"
         raise CaseError([f"--ucs over --tension: is {ratio:.3g}, {what}"])

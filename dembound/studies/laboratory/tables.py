@@ -101,14 +101,8 @@ def _summary(tested: Tested, ratios: Sequence[Ratio]) -> dict[str, Any]:
         "test": sample.test,
         "case": sample.case.name,
         "version": __version__,
-        "sample": {
-            "width": sample.width,
-            "height": sample.height,
-            "ends": sample.ends,
-            "damp": sample.damp,
-            "rate": sample.rate,
-            "shares": list(tested.shares),
-        },
+        "sample": {key: getattr(sample, key) for key in ("width", "height", "ends", "damp", "rate")}
+        | {"shares": list(tested.shares)},
         "packing": sample.packing,
         "material": sample.material,
         "homogenised": {"young": young, "poisson": poisson, "p_wave_speed": speed},
@@ -127,10 +121,7 @@ def _summary(tested: Tested, ratios: Sequence[Ratio]) -> dict[str, Any]:
                 **each.group,
                 "quantity": each.quantity,
                 "unit": UNITS.get(each.quantity, "1"),
-                "count": each.count,
-                "mean": each.mean,
-                "spread": each.spread,
-                "interval": each.interval,
+                **{key: getattr(each, key) for key in ("count", "mean", "spread", "interval")},
             }
             for each in tested.statistics
         ],

@@ -11,8 +11,7 @@ sum if Δ is that of its points, 1/16 of its samples', or a whole fraction of it
 """
 
 from dembound.studies.library.build import build_library
-from dembound.studies.library.library import Library
-from dembound.studies.library.record import Record, RecordTimes, read_records
+from dembound.studies.library.library import Library, Record, RecordTimes, read_records
 from dembound.studies.library.response import (
     LoadFactor,
     case_of,

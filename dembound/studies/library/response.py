@@ -17,12 +17,11 @@ from dembound.laws.law import Limits, in_columns
 from dembound.laws.linearpbond import limit_in_words, limit_lines
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
-from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT
+from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT, write_inputs
 from dembound.results.reader import open_record
 from dembound.running.planning import plan, warnings_before
 from dembound.studies.library.build import under
-from dembound.studies.library.library import Library
-from dembound.studies.library.record import Record
+from dembound.studies.library.library import Library, Record
 
 
 class WatchedContact(NamedTuple):
@@ -174,7 +173,7 @@ def write_response(library: Library, record: Record, path: Path) -> np.ndarray:
     ``superposed`` has the name of the library. The folder of the path is created if it does not exist.
     """
     motion = library.motion(record.values)
-    case, files = case_of(library, record), _texts(record)
+    case = case_of(library, record)
     make_folder(path.parent)
     with new_file(path) as file:
         own = {"name": record.name, "title": case.title, "case": case.text, "keys": json.dumps(case.keys)}
@@ -182,10 +181,7 @@ def write_response(library: Library, record: Record, path: Path) -> np.ndarray:
         describe(file, own | inherited | {"superposed": library.name, "complete": True})
         if case.silent:
             describe(file, {"silent": sorted(case.silent)})
-        inputs = file.create_group("inputs")
-        for number, (name, text) in enumerate(files.items()):
-            write(inputs, str(number), np.frombuffer(text.encode(), dtype=np.uint8), "UTF-8")
-            describe(inputs[str(number)], {"path": name})
+        write_inputs(file, _texts(record))
         histories = file.create_group("histories", track_order=True)
         for index, name in enumerate(library.monitors):
             group = histories.create_group(name)

@@ -8,8 +8,7 @@ import pytest
 from dembound.bar.fracture import Spall, breaks_at_ends, cracked_since, spalls
 from dembound.kernels.bar_cracks import OPENING
 from dembound.methods.bonds import Bonds
-from dembound.methods.fracture import Fracture
-from dembound.methods.rod import Rod
+from dembound.methods.rod import Fracture, Rod
 
 COUNT, SPACING, STEP = 41, 0.25, 1e-3
 ROD = Rod.uniform(COUNT, SPACING, section=1.0, modulus=1e9, critical_stretch=1e-3)

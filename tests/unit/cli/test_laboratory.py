@@ -1,4 +1,4 @@
-"""The command test: a square lattice that is pulled until one row of bonds tears."""
+"""The command test on a lattice that is pulled until one row of bonds tears; what the command material prints."""
 
 import csv
 import json
@@ -6,7 +6,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from small_cases import PUSHED, small
+import tomli_w
+from small_cases import GRAINS, PUSHED, SOIL, small
 
 from dembound.kinds import loads
 from dembound.running import run_case
@@ -98,3 +99,29 @@ def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound,
     material = loads(written).material
     assert material.pb_ten == pytest.approx(20e6 / 0.3, rel=1e-3)
     assert tested[-1].name == f"tension_{material.pb_ten:.4g}_{material.pb_coh:.4g}"  # what is written was tested
+
+
+TARGETS = {"density": 2630.0, "young": 62e9, "poisson": 0.24, "fric": 0.5, "law": "linearpbond", "pb_ten": 1e7}
+
+
+def test_a_body_has_the_moduli_asked_for(dembound, tmp_path) -> None:
+    (tmp_path / "body.toml").write_text(tomli_w.dumps(GRAINS | {"material": TARGETS}))
+    (found,) = json.loads(dembound("material", "body.toml", "--json").out)
+    solid, sheet = found["moduli"]["strain"], found["moduli"]["stress"]
+    assert (solid["young"], solid["poisson"]) == pytest.approx((62e9, 0.24))
+    assert sheet["young"] == pytest.approx(62e9 / (1.0 - 0.24**2))
+    assert sheet["poisson"] == pytest.approx(0.24 / (1.0 - 0.24))
+    assert found["speeds"]["isotropic"]["s"] == pytest.approx((solid["shear"] / 2630.0) ** 0.5)
+    low, high = (pick(found["speeds"][way]["p"] for way in ("x", "y", "45")) for pick in (min, max))
+    assert 0.0 < high / low - 1.0 <= found["anisotropy"]["p"]
+    crack = found["first_crack"]
+    assert crack["compression"]["stress"] < -crack["tension"]["stress"] < 0.0
+
+
+def test_each_layer_has_its_own(dembound, tmp_path) -> None:
+    (tmp_path / "soil.toml").write_text(tomli_w.dumps(SOIL))
+    found = json.loads(dembound("material", "soil.toml", "--json").out)
+    assert [each["layer"] for each in found] == ["clay", "sand", "rock"]
+    assert [each["speeds"]["y"]["s"] for each in found] == pytest.approx([200.0, 350.0, 700.0])
+    assert [each["speeds"]["lattice"]["s"] for each in found] == pytest.approx([200.0, 350.0, 700.0])
+    assert found[0]["first_crack"] == {"compression": None, "tension": None}

@@ -5,9 +5,8 @@ import pytest
 from gauge_records import drift, noise, offset, signal
 
 from dembound.errors import CaseError
-from dembound.gauge.baseline import Treatment, find_baseline, treated
-from dembound.gauge.checks import clipped, unfit_signal
-from dembound.gauge.filters import Filters
+from dembound.gauge.baseline import Filters, Treatment, find_baseline, treated
+from dembound.gauge.gauge_io import clipped, unfit_signal
 from dembound.gauge.reading.signal import Signal
 
 TIME, VALUES = signal().T

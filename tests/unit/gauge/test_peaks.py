@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.gauge.matching import matched
-from dembound.gauge.peaks import Peaks, crest, denoised, first_fall, positive_peaks
+from dembound.gauge.peaks import Peaks, crest, denoised, first_fall, matched, positive_peaks
 
 TIME = 0.5 * np.arange(1000)
 CRESTS, HEIGHTS, LENGTH = np.array([100.15, 231.8, 360.05]), np.array([2.0, 1.0, 0.3]), 40.0

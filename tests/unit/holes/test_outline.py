@@ -1,9 +1,11 @@
-"""Outlines of holes: points, nearest points, crossings, and the parts within a box."""
+"""Holes shape by shape: positions in them, their outlines, and the level floor that they leave at a side."""
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
-from dembound.holes import Circle, Ellipse, Polygon, Rectangle
+from dembound.holes import Circle, Ellipse, Hole, Polygon, Rectangle
+from dembound.holes.hole import floor_beside
 from dembound.holes.outline import EllipseOutline, Outline, PolygonOutline
 
 HORSESHOE = ((1.0, 1.0), (4.0, 1.0), (4.0, 5.0), (3.0, 5.0), (3.0, 2.0), (2.0, 2.0), (2.0, 5.0), (1.0, 5.0))
@@ -106,3 +108,82 @@ def test_edges_that_cross_or_touch_are_found() -> None:
     assert crosses((0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0))
     assert crosses((0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 0.0), (0.0, 2.0))  # a corner on an edge
     assert Polygon(name="h", type="polygon", points=((0, 0), (2, 2), (2, 0), (0, 2))).outline is None
+
+
+BOX = (10.0, 0.0, 70.0, 30.0)
+
+
+def polygon(*points: tuple[float, float]) -> Polygon:
+    return Polygon(type="polygon", name="cut", points=points)
+
+
+def rectangle(*corners: float) -> Rectangle:
+    return Rectangle(type="rectangle", name="cut", corners=corners)
+
+
+SLOPE = polygon((35.0, 31.0), (55.0, 15.3), (71.0, 15.3), (71.0, 31.0))
+
+
+def test_a_slope_leaves_a_floor_at_one_side() -> None:
+    """It is level up to where the slope, of 15.7 m in 20 m, is half a diameter high; an eighth of one is rounding."""
+    floor = floor_beside([SLOPE], BOX, "right", 1.0)
+
+    assert floor.height == pytest.approx(15.3, abs=1e-12)
+    assert floor.width == pytest.approx(15.0 + 0.5 * 20.0 / 15.7, abs=0.125)
+    assert floor_beside([SLOPE], BOX, "left", 1.0) is None
+    assert floor_beside([], BOX, "left", 1.0) is None
+
+
+def test_holes_join_and_floors_may_be_below_the_disks_or_narrow() -> None:
+    floor = floor_beside([rectangle(0.0, 20.0, 30.0, 31.0), rectangle(5.0, 12.0, 16.0, 20.5)], BOX, "left", 1.0)
+    assert floor.height == pytest.approx(12.0, abs=1e-12)
+    assert floor.width == pytest.approx(6.0, abs=0.125)
+    floor = floor_beside([rectangle(60.0, -5.0, 80.0, 40.0)], BOX, "right", 1.0)
+    assert floor.height == 0.0  # the lower side of the disks
+    floor = floor_beside([polygon((35.0, 31.0), (71.0, 10.0), (71.0, 31.0))], BOX, "right", 1.0)
+    assert floor.width < 2.0  # of a slope up to the side
+
+
+@pytest.mark.parametrize(
+    "hole",
+    [
+        rectangle(60.0, 10.0, 80.0, 29.0),
+        rectangle(30.0, 10.0, 60.0, 40.0),
+        Circle(type="circle", name="cut", centre=(70.0, 15.0), radius=4.0),
+    ],
+    ids=["covered", "inside", "niche"],
+)
+def test_without_a_way_down_along_the_side_there_is_none(hole) -> None:
+    assert floor_beside([hole], BOX, "right", 1.0) is None
+
+
+def test_an_ellipse_is_turned_counter_clockwise() -> None:
+    hole = Ellipse(name="h", type="ellipse", centre=(1.0, 2.0), semi_axes=(3.0, 1.0), angle=60.0)
+    along = np.array([0.5, np.sqrt(0.75)])
+    across = np.array([-along[1], along[0]])
+    places = np.stack([2.99 * along, 3.01 * along, -2.99 * along, 0.99 * across, 1.01 * across])
+
+    assert hole.takes(places + np.array([1.0, 2.0]), 1.0).tolist() == [True, False, True, True, False]
+
+
+@pytest.mark.parametrize("points", [HORSESHOE, HORSESHOE[::-1]])
+def test_a_polygon_may_go_round_either_way_and_hollows_stay_out(points) -> None:
+    hole = Polygon(name="h", type="polygon", points=points)
+    places = np.array([(1.5, 4.0), (2.5, 1.5), (3.5, 2.0), (2.5, 2.0 + 1e-9), (2.5, 4.0), (0.5, 3.0), (4.5, 1.5)])
+    assert hole.takes(places, 0.1).tolist() == [True, True, True, False, False, False, False]
+    # a corner on the ray counts once
+    rhomb = Polygon(name="h", type="polygon", points=((0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)))
+    places = np.array([(0.5, 0.0), (-2.0, 0.0), (-2.0, 1.0), (0.0, 0.0)])
+    assert rhomb.takes(places, 0.1).tolist() == [True, False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("shape", "keys", "message"),
+    [
+        (Rectangle, {"corners": (1.0, 0.0, 1.0, 2.0)}, "must have x0 < x1 and y0 < y1"),
+        (Polygon, {"points": ((0.0, 0.0), (1.0, 1.0))}, "has 2, must have at least three"),
+    ],
+)
+def test_shapes_without_an_inside_are_refused(shape: type[Hole], keys: dict[str, object], message: str) -> None:
+    with pytest.raises(ValidationError, match=message):
+        shape(name="h", type=shape.__name__.lower(), **keys)

@@ -6,8 +6,7 @@ import pytest
 from dembound.kernels.bar import plane_force, stored
 from dembound.kernels.bar_cracks import soften
 from dembound.methods.bonds import Bonds
-from dembound.methods.fracture import Fracture
-from dembound.methods.rod import Range, Rod
+from dembound.methods.rod import Fracture, Range, Rod
 
 COUNT, SPACING, SECTION, MODULUS, STRETCH, ENERGY = 41, 0.25, 0.5, 2e9, 1e-3, 6e3
 STRENGTH = MODULUS * STRETCH

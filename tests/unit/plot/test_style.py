@@ -1,4 +1,6 @@
-"""Figures are saved whole, alike, and in one style."""
+"""Figures are saved whole, alike, and in one style; tables hold their lines as they are drawn."""
+
+import csv
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from dembound.plot.style import (
     save,
     time_unit,
 )
+from dembound.plot.table import columns_of, write_lines
 
 
 def test_a_figure_is_saved_as_a_png_of_its_size_with_its_own_title_or_one_given(tmp_path):
@@ -60,3 +63,35 @@ def test_legends_have_what_is_seen_alone():
     panel.set(xlim=(0.0, 1.0), ylim=(-0.2, 1.2))
     outside_legend(figure, [panel], 3)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["line", "band", "point", "level", "key"]
+
+
+@pytest.fixture
+def figure():
+    """Two panels on one axis: three named lines over two sets of places, and a frame."""
+    figure = new_figure(4.0, 4.0)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    upper.plot([1.0, 2.0], [3.0, 4.0], gid="P1", label="one")
+    upper.plot([1.0, 2.0, 3.0], [7.0, 8.0, 9.0], gid="P1", label="two")
+    upper.axhline(5.0)
+    lower.plot([1.0, 2.0], [5.0, 6.0], gid="P2", label="P2")
+    upper.set_ylabel("force (N)")
+    lower.set_ylabel("work (J)")
+    lower.set_xlabel("time (s)")
+    return figure
+
+
+def test_lines_over_the_same_places_share_their_column(figure):
+    columns = dict(columns_of(figure))
+    places = ["time (s) of one", "time (s) of two"]
+    assert list(columns) == [places[0], "P1, one: force (N)", "P2: work (J)", places[1], "P1, two: force (N)"]
+    np.testing.assert_array_equal(columns["time (s) of one"], [1.0, 2.0])
+    np.testing.assert_array_equal(columns["P2: work (J)"], [5.0, 6.0])
+
+
+def test_shorter_columns_end_in_empty_cells_and_a_table_is_written_whole_or_not_at_all(figure, tmp_path):
+    with pytest.raises(FileNotFoundError):
+        write_lines(figure, tmp_path / "nowhere" / "table.csv")
+    write_lines(figure, tmp_path / "table.csv")
+    _, *rows = csv.reader((tmp_path / "table.csv").open(encoding="utf-8"))
+    assert rows == [["1", "3", "5", "1", "7"], ["2", "4", "6", "2", "8"], ["", "", "", "3", "9"]]
+    assert [path.name for path in tmp_path.iterdir()] == ["table.csv"]

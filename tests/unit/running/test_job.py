@@ -9,11 +9,9 @@ import pytest
 from readable import drawn_quickly
 
 from dembound.errors import CaseError, RunError
-from dembound.motion.endings import monitored
-from dembound.motion.paths import first_arrivals
 from dembound.motion.trackers import Run
 from dembound.results.folder import OWN
-from dembound.running import SECTIONS, Progress, plan, preflight, run_case, warnings_before
+from dembound.running import SECTIONS, Progress, plan, preflight, run_case
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "run.duration": 0.05}
@@ -189,19 +187,6 @@ def test_what_would_stop_a_case_is_foreseen_and_nothing_is_written(bar, spalling
     assert not list(tmp_path.iterdir())
 
 
-def test_what_is_missed_in_results_is_warned_of(bar) -> None:
-    def warned(changes: dict, words: str) -> list[str]:
-        return [line.split(":")[0] for line in warnings_before(plan(bar(changes))) if words in line]
-
-    # disks are 0.5 m wide; one is centred at (5.25, 0.25) m
-    for x, names in ((5.2, ["monitor.b"]), (5.8, [])):
-        two = [{"name": "a", "position": [5.25, 0.25]}, {"name": "b", "position": [x, 0.3]}]
-        assert warned({"monitor": two}, "records the same") == names
-    for snapshots, names in ((0, ["output.stress and output.contacts"]), (1, [])):
-        output = {"stress": True, "contacts": True, "snapshots": snapshots}
-        assert warned({"output": output}, "output.stress and output.contacts: is about snapshots") == names
-
-
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked_and_snapshots_evenly(bar, tmp_path) -> None:
     usual = {"run.time_step": 1e-4, "run.duration": 0.025, "output.snapshots": 4}
     for name, changes, expected in (
@@ -346,15 +331,3 @@ def test_keys_of_silence_without_effect_are_refused(bar, spalling) -> None:
             with pytest.raises(CaseError) as caught:
                 make(changes | {"run.duration": 0.01})
             assert any(problem.startswith(said) for problem in caught.value.problems)
-
-
-def test_monitors_that_no_wave_reaches_are_named_before_the_run(bar) -> None:
-    """The monitor of the farther end: its way over the speed of the fastest waves, of which the run is a share."""
-    planned = plan(bar())
-    sources, front = planned.kind.sources(planned.scene), planned.kind.front(planned.scene, planned.time_step)
-    first = first_arrivals(sources, front, monitored(planned.scene))
-    farthest = planned.scene.case.monitor[int(first.argmax())].name
-    for share, late in ((0.9, True), (1.1, False)):
-        lines = warnings_before(plan(bar({"run.duration": share * float(first.max())})))
-        found = [line for line in lines if "the first wave reaches it" in line]
-        assert [farthest in line and f"reaches it at {first.max():.4g} s" in line for line in found] == late * [True]

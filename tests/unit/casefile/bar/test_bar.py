@@ -6,7 +6,7 @@ import pytest
 from small_cases import problems_of, rows
 
 from dembound.kinds import loads, with_changes
-from dembound.methods.fracture import Fracture
+from dembound.methods.rod import Fracture
 from dembound.starting import starting_point
 
 STARTER = starting_point()

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.gauge.gauge_io import Gauge
 from dembound.gauge.spalling import evaluate
-from dembound.plot.gauge import plot_gauge
+from dembound.plot.laboratory import plot_gauge
 
 
 @pytest.fixture
