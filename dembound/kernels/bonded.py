@@ -8,7 +8,7 @@ from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_pairs
 from dembound.kernels.law import is_law, is_tie
-from dembound.kernels.near import approach
+from dembound.kernels.near import room
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Bonded, SeamEnds
 
@@ -27,7 +27,7 @@ def check(bonded, u, u_next, v):
     if 2.0 * way[0] < way[1]:
         return DONE
     way[0] = 0.0
-    way[1] = bonded.skin - approach(u, bonded.contacts.begin, bonded.origin, bonded.cells)
+    way[1] = room(u, bonded.contacts.begin, bonded.origin, bonded.skins, bonded.cells)
     return LIST_ENDS if way[1] < 0.0 else DONE
 
 

@@ -122,6 +122,9 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             if taken < 0.0:  # the force has changed its sign within the step
                 lost[2] += taken
                 taken = 0.0
+        if overlap <= 0.0 and not keeps_geometry and not intact:
+            all_shear[c] = 0.0  # as if the pair was met anew when it closes, so that bits do not depend on the list
+            all_slip[c] = 0.0
     pull = -N
     moment = 0.0
     if intact:

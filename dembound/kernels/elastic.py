@@ -20,7 +20,7 @@ from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, U, 
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.law import answer, generic, is_law, is_tie
-from dembound.kernels.near import approach
+from dembound.kernels.near import room
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks
 
@@ -169,7 +169,7 @@ def check_watch(watched, u, u_next, v):
     way, contacts = watched.way, watched.contacts
     if 2.0 * way[0] < way[1]:
         return DONE
-    listed = watched.skin - approach(u, contacts.begin, watched.origin, watched.cells)
+    listed = room(u, contacts.begin, watched.origin, watched.skins, watched.cells)
     way[0] = 0.0
     way[1] = min(slack(u, contacts, watched.limits, watched.keeps_slip), listed)
     if way[1] >= 0.0:

@@ -1,4 +1,4 @@
-"""Pairs of disks with small gaps, found by a grid of cells, and bounds on their motion since."""
+"""Pairs of disks with small gaps, found by a grid of cells, and the motion after which the list may be too short."""
 
 import math
 
@@ -12,34 +12,54 @@ ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
 """Steps from a cell to itself and to half of the cells that touch it."""
 
 
-@njit(**FAST)
-def _span(a, b):
-    """Largest distance between a point in box a and one in box b; boxes are (4,) smallest and largest x and y."""
-    return np.hypot(max(a[1] - b[0], b[1] - a[0]), max(a[3] - b[2], b[3] - a[2]))
-
-
 @in_chunks
 @njit(**FAST)
-def _boxes(first_chunk, last_chunk, u, begin, origin, cells, boxes):
-    """Fill boxes (c, 4) with smallest and largest displacement along x and y in every cell since the origin (2, n)."""
-    n = len(boxes)
+def _motions(first_chunk, last_chunk, u, begin, origin, skins, cells, found):
+    """Fill found (c, 9) with the motion of the disks of every cell since the origin, and what is left of their skins.
+
+    Mean motion along x and y of the disks with the least skin, so that a fast disk does not change it; the least of the
+    skins less the distance from that motion; the least skin; smallest and largest motion along x and y; the second
+    least of what is left.
+    """
+    n = len(found)
     for c in range(first_chunk * n // CHUNKS, last_chunk * n // CHUNKS):
-        box = boxes[c]
-        box[0] = box[2] = np.inf
-        box[1] = box[3] = -np.inf
+        least = np.inf
+        for m in range(cells.start[c], cells.start[c + 1]):
+            least = min(least, skins[cells.member[m]])
+        x = 0.0
+        y = 0.0
+        count = 0
+        own = found[c]
+        own[4] = own[6] = np.inf
+        own[5] = own[7] = -np.inf
         for m in range(cells.start[c], cells.start[c + 1]):
             i = cells.member[m]
-            x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
-            box[0], box[1] = min(box[0], x), max(box[1], x)
-            box[2], box[3] = min(box[2], y), max(box[3], y)
+            dx, dy = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
+            own[4], own[5] = min(own[4], dx), max(own[5], dx)
+            own[6], own[7] = min(own[6], dy), max(own[7], dy)
+            if skins[i] == least:
+                x += dx
+                y += dy
+                count += 1
+        x /= max(count, 1)
+        y /= max(count, 1)
+        left = np.inf
+        second = np.inf
+        for m in range(cells.start[c], cells.start[c + 1]):
+            i = cells.member[m]
+            dx, dy = u[0, begin + i] - origin[0, i] - x, u[1, begin + i] - origin[1, i] - y
+            own_left = skins[i] - np.sqrt(dx * dx + dy * dy)
+            second = min(second, max(left, own_left))
+            left = min(left, own_left)
+        own[0], own[1], own[2], own[3], own[8] = x, y, left, least, second
 
 
 @njit(**FAST)
-def _farthest_of(c, cells, boxes):
-    """Largest relative displacement of a disk in cell c and one in a cell that touches it."""
+def _room_of(c, cells, found):
+    """Least room between disks of cell c, and of a cell that touches it: the larger of two bounds for each."""
     columns, rows = cells.divisions[0], cells.divisions[1]
     column, row = c % columns, c // columns
-    far = 0.0
+    least = np.inf
     for right, up in ACROSS:
         x, y = column + right, row + up
         if cells.wraps[0]:
@@ -49,22 +69,17 @@ def _farthest_of(c, cells, boxes):
         if 0 <= x < columns and 0 <= y < rows:
             other = y * columns + x
             if cells.start[other + 1] > cells.start[other]:
-                far = max(far, _span(boxes[c], boxes[other]))
-    return far
-
-
-@njit(**MAKES)
-def moved(u, begin, origin):
-    """Largest displacement (m) of the n particles from `begin` on since the displacements origin (2, n)."""
-    squares = np.empty(CHUNKS)
-    _largest_squares(u, begin, origin, squares)
-    return np.sqrt(largest(squares))
+                one, two = found[c], found[other]
+                span = np.hypot(max(one[5] - two[4], two[5] - one[4]), max(one[7] - two[6], two[7] - one[6]))
+                left = one[2] + (one[8] if other == c else two[2]) - np.hypot(one[0] - two[0], one[1] - two[1])
+                least = min(least, max(left, one[3] + two[3] - span))
+    return least
 
 
 @in_chunks
 @njit(**FAST)
 def _largest_squares(first_chunk, last_chunk, u, begin, origin, squares):
-    """Fill squares (chunks,) with the largest squared displacements of the particles of each chunk, see `moved`."""
+    """Fill squares (chunks,) with the largest squared displacements of the particles of each chunk since the origin."""
     n = origin.shape[1]
     for chunk in range(first_chunk, last_chunk):
         square = 0.0
@@ -76,33 +91,35 @@ def _largest_squares(first_chunk, last_chunk, u, begin, origin, squares):
 
 @apart(types.float64)
 @njit(**MAKES)
-def approach(u, begin, origin, cells):
-    """Upper bound (m) of the relative displacement since the origin (2, n) of two disks that may meet.
+def room(u, begin, origin, skins, cells):
+    """Relative displacement (m) that two disks of no listed pair still need at least to touch; negative: they may.
 
-    u : (3, …) displacements; the n disks are those from `begin` on; cells : tables.Cells.
+    Pairs with gaps up to the sum of their skins (n,) m were listed at the displacements origin (2, n). u : (3, …)
+    displacements; the n disks are those from `begin` on; cells : tables.Cells.
     """
-    alone = moved(u, begin, origin)
-    if alone > cells.reach:
-        return 2.0 * alone
+    squares = np.empty(CHUNKS)
+    _largest_squares(u, begin, origin, squares)
+    if np.sqrt(largest(squares)) > cells.reach:
+        return -1.0
     count = cells.start.size - 1
-    boxes = np.empty((count, 4))
-    _boxes(u, begin, origin, cells, boxes)
-    far = np.empty(CHUNKS)
-    _farthest(cells, boxes, far)
-    return min(2.0 * alone, largest(far))
+    found = np.empty((count, 9))
+    _motions(u, begin, origin, skins, cells, found)
+    rooms = np.empty(CHUNKS)
+    _rooms(cells, found, rooms)
+    return -largest(rooms)
 
 
 @in_chunks
 @njit(**FAST)
-def _farthest(first_chunk, last_chunk, cells, boxes, far):
-    """Fill far (chunks,) with the largest relative displacement of disks in each chunk of cells and neighbours."""
+def _rooms(first_chunk, last_chunk, cells, found, rooms):
+    """Fill rooms (chunks,) with the least room of disks in each chunk of cells and their neighbours, negative."""
     count = cells.start.size - 1
     for chunk in range(first_chunk, last_chunk):
-        most = 0.0
+        least = np.inf
         for c in range(chunk * count // CHUNKS, (chunk + 1) * count // CHUNKS):
             if cells.start[c + 1] > cells.start[c]:
-                most = max(most, _farthest_of(c, cells, boxes))
-        far[chunk] = most
+                least = min(least, _room_of(c, cells, found))
+        rooms[chunk] = -least
 
 
 MARGIN = 1.0 + 1e-9  # of distances that only choose candidates, so that rounding misses no pair
@@ -248,3 +265,65 @@ def search(positions, radii, gap, periods, low, high, width, shape, order, start
                         insert(codes, begin, found, (np.int64(j) << BITS) + image)
                     found += 1
     return found
+
+
+@njit(**FAST)
+def directed(first, second, x, y):
+    """The lower and the higher disk of a pair, and the periods along x and y from the lower to the higher as a code."""
+    if first > second or (first == second and (x < 0 or (x == 0 and y < 0))):
+        return second, first, 3 * (1 - x) + 1 - y
+    return first, second, 3 * (x + 1) + y + 1
+
+
+@njit(**MAKES)
+def numbers_of(pairs, images, first, second, listed_images, count):
+    """Number (b,) of each pair among those listed, in either order of their disks; −1 for others.
+
+    pairs (b, 2) and first, second (c,) listed ones, of `count` disks; images (b, 2), listed_images (c, 2) : periods
+    from the first to the second.
+    """
+    start = np.zeros(count + 2, np.int64)
+    for c in range(first.size):
+        start[min(first[c], second[c]) + 2] += 1
+    for i in range(2, count + 2):
+        start[i] += start[i - 1]
+    order = np.empty(first.size, np.int64)
+    for c in range(first.size):
+        low = min(first[c], second[c])
+        order[start[low + 1]] = c
+        start[low + 1] += 1
+    found = np.full(pairs.shape[0], -1, np.int64)
+    for k in range(pairs.shape[0]):
+        low, high, code = directed(pairs[k, 0], pairs[k, 1], images[k, 0], images[k, 1])
+        for e in range(start[low], start[low + 1]):
+            c = order[e]
+            _, other, own = directed(first[c], second[c], listed_images[c, 0], listed_images[c, 1])
+            if other == high and own == code:
+                found[k] = c
+                break
+    return found
+
+
+@njit(**MAKES)
+def ends_of(first, second, live, begin, stop):
+    """Offsets (stop + 1,) of the contact ends of disks `begin` to stop − 1, and these ends, ascending for each disk.
+
+    first, second (b,) uint32 disks of pairs in places live (b,), ascending; an end is twice the place, + 1 for the
+    second disk.
+    """
+    start = np.zeros(stop + 1, np.uint32)
+    at = np.zeros(stop - begin + 1, np.int64)
+    for k in range(live.size):
+        at[first[k] - begin + 1] += 1
+        at[second[k] - begin + 1] += 1
+    for i in range(1, stop - begin + 1):
+        at[i] += at[i - 1]
+        start[begin + i] = at[i]
+    end = np.empty(2 * live.size, np.uint32)
+    for k in range(live.size):
+        i, j = first[k] - begin, second[k] - begin
+        end[at[i]] = 2 * live[k]
+        at[i] += 1
+        end[at[j]] = 2 * live[k] + 1
+        at[j] += 1
+    return start, end

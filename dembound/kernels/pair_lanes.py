@@ -93,17 +93,17 @@ def _contact(
             note_bits(contacts.closed, c, bits(np.uint8(was & ~now & exists)))
         slid = slip
         if slips_by_overlap(limits):
-            was = shear - step * _slide(way, arms, i, j, v)
-            slid = slip_after(limits, k, q, overlapped, overlap, was, slip)
+            earlier = shear - step * _slide(way, arms, i, j, v)
+            slid = slip_after(limits, k, q, overlapped, overlap, earlier, slip)
             S = shear_of(limits, k, q, overlap, shear, slid)
         most = most_shear(limits, kind, N)
         stays = at_most(magnitude(S), most)
         if slips_by_overlap(limits) or (byte_of(stays) & exists) != exists:
-            was = shear - step * _slide(way, arms, i, j, v)
-            before = shear_of(limits, k, q, overlapped, was, slip)
+            earlier = shear - step * _slide(way, arms, i, j, v)
+            before = shear_of(limits, k, q, overlapped, earlier, slip)
             S = choose(stays, S, with_sign(most, S))
             slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
-            loss = rubbed(limits, k, q, overlapped, overlap, was, shear, slip, slid, before, S)
+            loss = rubbed(limits, k, q, overlapped, overlap, earlier, shear, slip, slid, before, S)
             loss = choose(bits(exists), loss, 0.0)
             store(contacts.slip, c, slid)
             _add(taken, 0, larger(loss, 0.0))
@@ -163,6 +163,10 @@ def _act(
         pull -= N
         side += S
     if follows:
+        gone = byte_of(at_most((k[q, P.touch] - k[q, P.rest]) - stretch, 0.0)) & ~intact & exists
+        if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
+            shear = choose(bits(np.uint8(gone)), 0.0, shear)
+            store(contacts.slip, c, choose(bits(np.uint8(gone)), 0.0, load(contacts.slip, c)))
         store(contacts.shear, c, shear)
     fx, fy = nx * pull - ny * side, ny * pull + nx * side
     _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)

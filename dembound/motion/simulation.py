@@ -95,7 +95,8 @@ class Simulation:
         self.side_samples = Samples.between(0, 0, side_stride, 0)
         if self.sides is not None:
             self.state.side_work = np.zeros((2, len(self.sides.names), 2))
-        self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
+        inverses = 1.0 / scene.mass, 1.0 / scene.inertia  # rounded as in rows of copies
+        self._mobility, self._inverse_inertia = (layout.spread(time_step * of) for of in inverses)
         for mobility in (self._mobility, self._inverse_inertia):
             mobility[self._supports.slots] = 0.0  # these are moved by the support table
         self._probe_slots, self._tracked_slots = layout.slot[self.probes], layout.slot[scene.tracked]

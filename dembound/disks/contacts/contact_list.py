@@ -6,30 +6,31 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.dashpots import Dashpots
-from dembound.disks.contacts.pair_list import NO_LIMITS, PairList, near_pairs, pair_keys
+from dembound.disks.contacts.pair_list import NO_LIMITS, PairList, near_pairs
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, acting, bonds_of
+from dembound.disks.contacts.pairs import ContactHistory, Pairs, bonds_of
 from dembound.disks.contacts.row_plan import RowPlan
+from dembound.disks.contacts.skins import SKIN, cell_of, skins_of
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import BondFactors, brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
-from dembound.kernels.near import approach
+from dembound.kernels.near import numbers_of, room
 from dembound.laws.law import Limits
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
 
-SKIN = 0.05
-"""Pairs are listed while their gap is below this share of the mean diameter.
-
-The list is renewed once a particle has moved by half of it.
-"""
-
 _HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
 """The arrays of the pairs' history variables, in the order of `ContactHistory`."""
+
+GRAIN = 1e-12
+"""To which share of the mean diameter places of near pairs are rounded, so that copies of a pair share a row."""
+
+PAIR = ("first", "second", "image", "contact_type")
+"""The fields of pairs."""
 
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
 """The arrays of the pairs, besides their forces, that saved_arrays() returns."""
@@ -63,7 +64,7 @@ class ContactList(PairList):
 
     limits : strengths and friction; in layered ground columns of the rows of constants.
     kind : (b,) types of the contacts as built, rows of `bonds`.
-    skin : m, gap up to which the list is complete.
+    skin : m, gap up to which the list is complete, beside fast particles more. time_step : s, of the run.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     retired : (m,) bool, particles that meet no others any more.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -92,7 +93,8 @@ class ContactList(PairList):
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
-        self._set_origin(np.zeros((2, len(assembly.radii))))
+        self.time_step = 0.0
+        self._set_origin(np.zeros((2, len(assembly.radii))), np.full(len(assembly.radii), 0.5 * self.skin))
         self.keeps_slip = False
         constants = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         if layers is not None:
@@ -100,6 +102,7 @@ class ContactList(PairList):
         self.bonds, self.kind, self._begun_slip = stressed(ground, constants, assembly, at_rest)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[self.kind, :2]), self.kind)
+        self._built = pairs
         bonded = bonds_of(self.ground.law, self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self.own_types = len(self.bonds)
@@ -162,29 +165,37 @@ class ContactList(PairList):
     def is_old(self, displacement: np.ndarray) -> bool:
         """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
         u = self.spread(displacement)
-        return self.skin - approach(u, self._slots.start, self.origin, self.cells) < 0.0
+        return bool(room(u, self._slots.start, self.origin, self.skins, self.cells) < 0.0)
 
-    def search(self, displacement: np.ndarray) -> None:
-        """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond."""
+    def search(self, displacement: np.ndarray, velocity: np.ndarray | None = None) -> None:
+        """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond.
+
+        velocity : (3, n) m/s, by which fast particles get wider skins; None: all have the same.
+        """
         self.note_cracks()
         moved = displacement[:2, self.nodes].T
         if not np.isfinite(moved).all():
             return  # the `Watch` of the run raises the error
-        kept = self._remaining(moved)
-        met, constants = self._met(moved, kept)
+        skins = np.full(len(self.assembly.radii), 0.5 * self.skin)
+        if velocity is not None:
+            cell = cell_of(self.cells)[self._slot - self._slots.start]
+            way = self.time_step * velocity[:2, self.nodes]
+            skins = skins_of(way, cell, self.ground.brick.mean_diameter)
+        kept = self._remaining(moved, skins)
         # rows of earlier searches that are still in use are moved up to follow those of the brick
         own = len(self.bonds)
         used, row = np.unique(self.of("contact_type")[kept], return_inverse=True)
         extra = used >= own
         place = used.astype(np.int64)
         place[extra] = own + np.arange(np.count_nonzero(extra))
+        met, constants = self._met(moved, kept, skins, own + int(np.count_nonzero(extra)))
         self._constants = np.vstack([self.bonds, self._constants[used[extra]], constants])
         first, second = self.pairs
         pairs = Pairs(
             np.concatenate([first[kept], met.first]),
             np.concatenate([second[kept], met.second]),
             np.concatenate([self.image[kept], met.image]),
-            np.concatenate([place[row], own + np.count_nonzero(extra) + met.contact_type]),
+            np.concatenate([place[row], met.contact_type]),
         )
         del first, second, row
         history = ContactHistory(
@@ -197,7 +208,7 @@ class ContactList(PairList):
             drag=self._drag_of(kept, len(met.first)),
         )
         self._list(pairs, history)
-        self._set_origin(displacement[:2, self.nodes])
+        self._set_origin(displacement[:2, self.nodes], skins)
 
     def _kept(self, first: np.ndarray, second: np.ndarray, kept: np.ndarray) -> np.ndarray:
         """Whether the bonds between particles (b,) may break, (b,) uint8, if it was kept (b,) before."""
@@ -209,28 +220,38 @@ class ContactList(PairList):
         """Last forces of the dashpots of the pairs kept (b,) bool, and of more pairs without any; None: no dashpots."""
         return None if self.dashpots is None else np.vstack([self.drag[self.live][kept], np.zeros((more, 2))])
 
-    def _remaining(self, moved: np.ndarray) -> np.ndarray:
-        """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones."""
+    def _remaining(self, moved: np.ndarray, skins: np.ndarray) -> np.ndarray:
+        """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones.
+
+        skins : (m,) m.
+        """
         radii, (first, second) = self.assembly.radii, self.pairs
         vectors = moved[second] - moved[first] + self._constants[self.of("contact_type"), :2]
-        kept = (self.of("state") == INTACT) | (np.hypot(*vectors.T) - radii[first] - radii[second] <= self.skin)
+        near = np.hypot(*vectors.T) - radii[first] - radii[second] <= skins[first] + skins[second]
+        kept = (self.of("state") == INTACT) | near
         if self._held is not None:
             kept[self.find(*self._held)[1]] = True
+        kept[: self._in_rows] = True  # their places are there in any case
         return kept & ~(self.retired[first] | self.retired[second])
 
-    def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
-        """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
+    def _met(self, moved: np.ndarray, kept: np.ndarray, skins: np.ndarray, types: int) -> tuple[Pairs, np.ndarray]:
+        """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m, of skins (m,) m.
 
-        Their types are rows of constants, in layered ground with four limits, which are returned too.
+        Their types, from number `types` on, are rows of constants, in layered ground with four limits, which are
+        returned too; contacts of the brick that had parted have theirs.
         """
         positions, radii = self.assembly.positions, self.assembly.radii
-        near, image = near_pairs(positions + moved, radii, self.skin, self.periods)
+        near, image = near_pairs(positions + moved, radii, skins, self.periods)
         first, second = (particles[kept] for particles in self.pairs)
-        keys = pair_keys(first, second, self.image[kept], len(radii))
-        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
+        fresh = numbers_of(near, image, first, second, self.image[kept], len(radii)) < 0
         fresh &= ~self.retired[near].any(axis=1)
-        (first, second), image = near[fresh].T, image[fresh]
+        near, image, built = near[fresh], image[fresh], self._built
+        at = numbers_of(near, image, built.first, built.second, built.image, len(radii))
+        back = Pairs(*(getattr(built, name)[at[at >= 0]] for name in PAIR))
+        (first, second), image = near[at < 0].T, image[at < 0]
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
+        unit = GRAIN * self.ground.brick.mean_diameter
+        vectors = np.round(vectors / unit) * unit  # alike in copies of a brick, whatever other pairs there are
         zone = self.ground.zone_of(positions[:, 1])
         zones = zone[first], zone[second]
         constants = self.ground.pair_constants(
@@ -244,8 +265,9 @@ class ContactList(PairList):
             limits = np.repeat(NO_LIMITS, len(first), axis=0)
             limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
             constants = np.column_stack([constants, limits])
-        constants, row_of = shared_constants(constants, np.column_stack(zones), self.skin, self.ground.law.width)
-        return Pairs(first, second, image, row_of), constants
+        constants, row_of = shared_constants(constants, np.column_stack(zones), self.ground.law.width)
+        met = Pairs(first, second, image, types + row_of)
+        return Pairs(*(np.concatenate([getattr(each, name) for each in (back, met)]) for name in PAIR)), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
@@ -254,7 +276,8 @@ class ContactList(PairList):
         first, second = (number[particles] for particles in other.pairs)
         left = (first >= 0) & (second >= 0)
         self._constants = other._constants
-        self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
+        slots = other._slot[kept] - other._slots.start
+        self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
         pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
         history = ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place")))
@@ -299,32 +322,12 @@ class ContactList(PairList):
         noted, self._cracks = self._cracks, []
         return joined(noted)
 
-    def reached(self) -> tuple[np.ndarray, np.ndarray]:
-        """First and second particle (b,) of the bonds that have reached their strength, but never break."""
-        at = self.arrays.kept == kernel.REACHED
-        if not at.any():
-            return self.pairs[0][:0], self.pairs[1][:0]
-        own = self.of("kept") == kernel.REACHED
-        first, second = self.pairs
-        return first[own], second[own]
-
-    def freshly_torn(self) -> np.ndarray:
-        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
-        return self._counted(self.of("cracked") >= 0) > 0
-
-    def bonds_left(self) -> np.ndarray:
-        """Number (m,) of intact bonds of every particle."""
-        return self._counted(self.of("state") == INTACT)
-
-    def coordination(self, geometry: int) -> np.ndarray:
-        """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
-        return self._counted(acting(self.arrays, geometry)[self.live])
-
     def saved_arrays(self) -> Arrays:
         """The pairs with their history, and cracks not yet recorded, for a checkpoint."""
         self.note_cracks()
         saved = {name: self.of(name) for name in _KEPT} | {"force": self.force}
-        saved |= {"image": self.image, "constants": self._constants, "origin": self.origin}
+        saved |= {"image": self.image, "constants": self._constants}
+        saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
             saved["drag"] = self.drag[self.live]
         saved["retired"] = self.retired
@@ -339,7 +342,8 @@ class ContactList(PairList):
         if saved["contact_type"].max(initial=0) >= max(len(saved["constants"]), 1):
             raise ValueError("contacts have types without constants")
         self._constants = saved["constants"]
-        self._set_origin(saved["origin"][:, self._slot - self._slots.start])
+        slots = self._slot - self._slots.start
+        self._set_origin(saved["origin"][:, slots], saved["skins"][slots])
         self.keeps_slip = bool(saved["keeps_slip"])
         self.retired = saved["retired"].copy()
         begin, node = self.nodes.start, self.layout.node

@@ -4,10 +4,11 @@ import numpy as np
 
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, in_places
+from dembound.disks.contacts.pairs import ContactHistory, Pairs, acting, in_places
 from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import near
+from dembound.kernels.contacts import INTACT, REACHED
 from dembound.kernels.tables.contacts import Cells, PairRows
 from dembound.laws.law import Limits, in_columns
 from dembound.motion.state import Layout, aligned_zeros
@@ -21,25 +22,16 @@ In wider cells disks move apart more, in narrower ones disks of cells that do no
 """
 
 
-def pair_keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
-    """One number per pair, the same for either order of the two particles."""
-    turned = (first > second) | ((first == second) & ((image[:, 0] < 0) | ((image[:, 0] == 0) & (image[:, 1] < 0))))
-    low = np.where(turned, second, first).astype(np.int64)
-    high = np.where(turned, first, second).astype(np.int64)
-    image = np.where(turned[:, None], -image, image)
-    return ((low * count + high) * 3 + image[:, 0] + 1) * 3 + image[:, 1] + 1
-
-
 def near_pairs(
-    positions: np.ndarray, radii: np.ndarray, skin: float, periods: tuple[float | None, float | None]
+    positions: np.ndarray, radii: np.ndarray, skins: np.ndarray, periods: tuple[float | None, float | None]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (b, 2) of disks with gaps up to skin (m), and the periods (b, 2) between them, each pair once.
+    """Pairs (b, 2) of disks with gaps up to the sum of their skins, and the periods (b, 2) between them, each once.
 
-    positions (n, 2), radii (n,) in m. Particles may have moved out of the period, as only differences of positions are
+    positions (n, 2), radii (n,), skins (n,) in m. Particles may have moved out of the period, as only differences of positions are
     used. Periods between a pair are never negative along x, nor along y alone.
     """
     lengths = np.array([length or 0.0 for length in periods])
-    pairs, images = near.near_pairs(np.ascontiguousarray(positions), radii, skin, lengths)
+    pairs, images = near.near_pairs(np.ascontiguousarray(positions), radii + skins, 0.0, lengths)
     turned = (images[:, 0] < 0) | ((images[:, 0] == 0) & (images[:, 1] < 0))
     pairs[turned] = pairs[turned, ::-1]
     images[turned] *= -1
@@ -85,7 +77,8 @@ class PairList:
     rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
         the disks (k,) with ends of other pairs, offsets (k + 1,) of each one's ends, and these ends (e,); extra :
         (3, slots) work space of the kernels.
-    origin : (2, m) m, displacements of the part's m slots at which the list was made.
+    origin : (2, m) m, displacements of the part's m slots at which the list was made; skins : (m,) m, up to whose sum
+    gaps of pairs are listed.
     cells : of the particles there.
     ground : whose law says how many constants of it a pair has.
     bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
@@ -147,23 +140,43 @@ class PairList:
 
         Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
         """
-        count = len(self.assembly.radii)
-        listed = pair_keys(*self.pairs, self.image, count)
-        order = np.argsort(listed)
-        keys = pair_keys(first, second, self.images(first, second, vectors), count)
-        at = order[np.minimum(np.searchsorted(listed, keys, sorter=order), len(order) - 1)]
-        return listed[at] == keys, at
+        pairs, images = np.stack([first, second], axis=1), self.images(first, second, vectors)
+        at = near.numbers_of(pairs, images, *self.pairs, self.image, len(self.assembly.radii))
+        return at >= 0, at
 
     def _counted(self, chosen: np.ndarray) -> np.ndarray:
         """Number (m,) of the chosen pairs (b,) that each particle has."""
         ends = np.concatenate([particles[chosen] for particles in self.pairs])
         return np.bincount(ends, minlength=len(self.assembly.radii))
 
-    def _set_origin(self, displacement: np.ndarray) -> None:
-        """Store the displacements (2, m) m from which later motion is counted."""
+    def reached(self) -> tuple[np.ndarray, np.ndarray]:
+        """First and second particle (b,) of the bonds that have reached their strength, but never break."""
+        at = self.arrays.kept == REACHED
+        if not at.any():
+            return self.pairs[0][:0], self.pairs[1][:0]
+        own = self.of("kept") == REACHED
+        first, second = self.pairs
+        return first[own], second[own]
+
+    def freshly_torn(self) -> np.ndarray:
+        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
+        return self._counted(self.of("cracked") >= 0) > 0
+
+    def bonds_left(self) -> np.ndarray:
+        """Number (m,) of intact bonds of every particle."""
+        return self._counted(self.of("state") == INTACT)
+
+    def coordination(self, geometry: int) -> np.ndarray:
+        """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
+        return self._counted(acting(self.arrays, geometry)[self.live])
+
+    def _set_origin(self, displacement: np.ndarray, skins: np.ndarray) -> None:
+        """Store the displacements (2, m) m from which later motion is counted, and the skins (m,) m of particles."""
         self.origin = np.zeros((2, self._slots.stop - self._slots.start))
         slot = self._slot - self._slots.start
         self.origin[:, slot] = displacement
+        self.skins = np.full(self.origin.shape[1], float(skins.min()))
+        self.skins[slot] = skins
         self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
 
     def _list(self, pairs: Pairs, history: ContactHistory) -> None:
@@ -174,6 +187,7 @@ class PairList:
             self.limits = in_columns(columns, self.limits.geometry)
         placed = in_places(pairs, history, self._slot, constants, self._plan)
         self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
+        self._in_rows = len(placed.in_rows)
         if self.factors is not None:
             self.limits = self.limits._replace(factor=self._factors(self.factors))
         if self.dashpots is not None:

@@ -14,6 +14,7 @@ from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
+from dembound.kernels.near import ends_of
 from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
 from dembound.laws.law import Limits
@@ -223,7 +224,10 @@ def in_places(
     in_rows = np.full(len(first), -1)
     if plan is not None:
         in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
-    order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first, in_rows, in_rows < 0))
+    keys = (
+        (first.astype(np.int64) * (int(slot.max()) + 1) + second) * 9 + 3 * (pairs.image[:, 0] + 1) + pairs.image[:, 1]
+    )
+    order = np.argsort(np.where(in_rows >= 0, in_rows - len(slot) * 2**32, keys), kind="stable")
     first, second, in_rows = first[order], second[order], in_rows[order]
     places = 0 if plan is None else plan.count
     shared = int(np.count_nonzero(in_rows >= 0))
@@ -234,10 +238,7 @@ def in_places(
     count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
     if plan is not None:
         count = -(-count // LANES) * LANES  # each row of forces is aligned
-    owner = np.concatenate([first, second])
-    end = np.concatenate([2 * live, 2 * live + 1]).astype(np.uint32)
-    start = np.zeros(stop + 1, dtype=np.uint32)
-    np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
+    start, end = ends_of(first, second, live, begin, stop)
 
     def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
         """Values of the pairs in their places."""
@@ -262,19 +263,23 @@ def in_places(
         kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
         force=aligned_zeros(4, count),
         start=start,
-        end=end[np.lexsort((end, owner))],
+        end=end,
     )
-    strays = None if plan is None else _ends_apart(owner, end, 2 * places)
+    strays = None if plan is None else _ends_apart(start, end, 2 * places)
     drag = np.zeros((0, 2)) if history.drag is None else placed(history.drag[order])
     return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays, drag)
 
 
-def _ends_apart(owner: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends."""
+def _ends_apart(start: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends.
+
+    start : offsets of the ends of all owners.
+    """
     others = end >= first
-    order = np.lexsort((end[others], owner[others]))
-    slot, start = np.unique(owner[others][order], return_index=True)
-    return slot, np.append(start, len(order)), end[others][order]
+    owner = np.repeat(np.arange(len(start) - 1), np.diff(start).astype(np.int64))[others]
+    counts = np.bincount(owner, minlength=len(start) - 1)
+    slot = np.flatnonzero(counts)
+    return slot, np.append(0, np.cumsum(counts[slot])), end[others]
 
 
 def plain_contacts(

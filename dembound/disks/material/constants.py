@@ -120,15 +120,13 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
     return np.vstack(found)
 
 
-def shared_constants(
-    constants: np.ndarray, zones: np.ndarray, length: float, width: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows (p, …) of the constants of pairs, to rounding, and the row of each pair (b,).
+def shared_constants(constants: np.ndarray, zones: np.ndarray, width: int) -> tuple[np.ndarray, np.ndarray]:
+    """Distinct rows (p, …) of the constants of pairs, and the row of each pair (b,).
 
     Pairs at the same place of different bricks then share a row, if they are in the same zones (b, 2) and have the same
-    limits; length (m) is the scale for rounding errors, width the number of constants of the law.
+    limits; width : number of constants of the law.
     """
-    places = np.column_stack([np.round(constants[:, : len(PLACE)] / (1e-6 * length)), zones, constants[:, width:]])
+    places = np.column_stack([constants[:, : len(PLACE)], zones, constants[:, width:]])
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return constants[first], row_of.reshape(-1)
 

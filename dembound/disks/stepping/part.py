@@ -92,7 +92,7 @@ class DiskPart(Part):
             return DampedLinks(links, self.memories.arrays)
         if contacts is None or not (self.uses_history or self.watches):
             return links
-        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
+        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skins, contacts.cells)
         if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
         law = self._bonded(
@@ -114,7 +114,7 @@ class DiskPart(Part):
     def react(self, why: int, steps: int, state: State) -> None:
         """List the pairs anew if some may be missing."""
         if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
-            self.contacts.search(state.displacement)
+            self.contacts.search(state.displacement, state.velocity)
 
     def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
         """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""

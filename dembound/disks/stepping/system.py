@@ -49,6 +49,8 @@ class DiskSystem(RecordedDisks):
         load: np.ndarray | None = None,
     ) -> None:
         disks = DiskParts(scene, start, None if settling else time_step, watches=not settling)
+        for pairs in disks.contacts.values():
+            pairs.time_step = time_step
         ties = [*walls(scene), *disks.seams]
         if disks.damped_ties is not None:
             ties.append(disks.damped_ties)

@@ -20,16 +20,16 @@ class WatchedLinks(NamedTuple):
     """The elastic law with a check for contacts that would leave it.
 
     contacts, limits : the pairs and their limits; origin : (2, n) displacements at which the list of pairs was made, of
-    the n particles of the rows; skin : m, largest gap of listed pairs; cells : of the particles then; arms : (begin +
-    n,) m, longest arm of a particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were
-    checked, and the distance they may move; keeps_slip : whether contacts have slid earlier.
+    the n particles of the rows; skins : (n,) m, up to whose sum gaps of pairs are listed; cells : of the particles
+    then; arms : (begin + n,) m, longest arm of a particle's contacts; way : (2,) m, distance surfaces have moved since
+    the contacts were checked, and the distance they may move; keeps_slip : whether contacts have slid earlier.
     """
 
     links: Links
     contacts: Contacts
     limits: Any
     origin: np.ndarray
-    skin: float
+    skins: np.ndarray
     cells: Cells
     arms: np.ndarray
     way: np.ndarray
@@ -39,16 +39,16 @@ class WatchedLinks(NamedTuple):
 class Bonded(NamedTuple):
     """The history-dependent law on the n particles of the contacts.
 
-    limits : friction and strengths; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
-    listed; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,) m, distance
-    particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped (chunks, 2),
-    lost (chunks, 4) : work space.
+    limits : friction and strengths; origin : (2, n) displacements at which pairs were listed, with gaps up to the sum
+    of their skins (n,) m; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,)
+    m, distance particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped
+    (chunks, 2), lost (chunks, 4) : work space.
     """
 
     contacts: Contacts
     limits: Any
     origin: np.ndarray
-    skin: float
+    skins: np.ndarray
     cells: Cells
     stops: bool
     way: np.ndarray

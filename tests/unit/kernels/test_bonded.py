@@ -11,7 +11,7 @@ from dembound.kernels import bonded, follower  # noqa: F401  (they make the law 
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
 from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
-from dembound.kernels.near import moved
+from dembound.kernels.near import room
 from dembound.kernels.tables import Bonded, Cells, Contacts, Log
 from dembound.laws.law import Limits
 
@@ -19,7 +19,8 @@ PARTICLES, PAIRS = 25, 60
 STEP = 0.1
 WEAK = Limits(friction=0.5, tension=0.3, cohesion=0.25, tan_fa=0.6, geometry=UPDATED)
 FAR = 1e3
-NO_CELLS = Cells(*np.zeros((2, 1), dtype=np.int64), *np.ones((2, 2), dtype=np.int64), reach=0.0)
+EVERY = Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), *np.ones((2, 2), dtype=np.int64), reach=np.inf)
+"""One cell with all particles."""
 
 
 def start() -> tuple[np.ndarray, np.ndarray]:
@@ -30,7 +31,7 @@ def start() -> tuple[np.ndarray, np.ndarray]:
 def bonded_law(pairs: Contacts, limits: Limits, *, skin: float = FAR, stop: bool = False) -> Bonded:
     """The law on these pairs, which are listed where particles are at the start."""
     space = np.zeros(2), np.zeros(CHUNKS), np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, 4))
-    return Bonded(pairs, limits, np.zeros((2, PARTICLES)), skin, NO_CELLS, stop, *space)
+    return Bonded(pairs, limits, np.zeros((2, PARTICLES)), np.full(PARTICLES, 0.5 * skin), EVERY, stop, *space)
 
 
 def run_kernel(
@@ -122,10 +123,11 @@ def test_no_step_begins_with_a_list_that_is_too_old() -> None:
     assert not log.work.any()
     done, why, _ = run_kernel(pairs, WEAK, model, u, v, skin=0.3)
 
-    far = np.array([moved(then, 0, np.zeros((2, PARTICLES))) for then, _, _ in states])
+    law = bonded_law(pairs, WEAK, skin=0.3)
+    left = np.array([room(then, 0, law.origin, law.skins, law.cells) for then, _, _ in states])
     assert why == LIST_ENDS
     assert 1 < done < 60
-    assert done == np.argmax(2.0 * far > 0.3)
+    assert done == np.argmax(left < 0.0)
     close(u, states[done][0])
     close(v, states[done][1])
 
@@ -150,12 +152,12 @@ def test_a_supported_node_that_outruns_all_others_ages_the_list() -> None:
     laws = bonded_law(pairs, WEAK), bonded_law(later, WEAK, skin=2.0)
     done, why = advance(u, np.empty_like(u), v, 0, laws, (), None, body, supports, log)
 
-    origin = np.zeros((2, PARTICLES))
-    far = np.array([moved(then, PARTICLES, origin) for then, _, _ in states])
+    law = laws[1]
+    left = np.array([room(then, PARTICLES, law.origin, law.skins, law.cells) for then, _, _ in states])
     others = np.delete(np.array([before for _, before, _ in states]), driven, axis=2)
     # the rest of its part is so slow that by its speed the list would stay good for all steps
     assert 2.0 * 10 * STEP * np.hypot(*others[:, :2].transpose(1, 0, 2)).max() < 2.0
     assert why == LIST_ENDS
-    assert done == np.argmax(2.0 * far > 2.0) == 4
+    assert done == np.argmax(left < 0.0) > 1
     close(u, states[done][0])
     close(v, states[done][1])

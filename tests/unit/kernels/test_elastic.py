@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from plain_kernels import behind, random_pairs, stepped
 
-from dembound.kernels import tables
+from dembound.kernels import near, tables
 from dembound.kernels.common import CHUNKS, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import BONDED
 from dembound.kernels.elastic import contact_forces
 from dembound.kernels.loop import advance
-from dembound.kernels.near import moved
 from dembound.laws.law import Limits
 
 PARTICLES, CONTACTS = 30, 70
@@ -145,7 +144,8 @@ def test_steps_and_their_log_are_those_of_a_plain_leapfrog(bodies: Bodies, steps
     close(log.top_speed, np.hypot(speeds[..., 0], speeds[..., 1]).max(axis=0))
 
 
-NO_CELLS = tables.Cells(*np.zeros((2, 1), dtype=np.int64), *np.ones((2, 2), dtype=np.int64), reach=0.0)
+EVERY = tables.Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), *np.ones((2, 2), dtype=np.int64), reach=np.inf)
+"""One cell with all particles."""
 
 
 def watched(bodies: Bodies, **changes: object) -> tables.WatchedLinks:
@@ -153,8 +153,8 @@ def watched(bodies: Bodies, **changes: object) -> tables.WatchedLinks:
     pairs = random_pairs(PARTICLES, CONTACTS, gap=0.3)
     limits = Limits(friction=5.0, tension=1e3, cohesion=1e3, tan_fa=0.0, geometry=BONDED)
     arms = np.full(PARTICLES, 1.1)  # half of the longest distance, and the largest difference of radii
-    links, origin = bodies.links(), np.zeros((2, PARTICLES))
-    return tables.WatchedLinks(links, pairs, limits, origin, 1e3, NO_CELLS, arms, np.zeros(2))._replace(**changes)
+    links, origin, skins = bodies.links(), np.zeros((2, PARTICLES)), np.full(PARTICLES, 1e3)
+    return tables.WatchedLinks(links, pairs, limits, origin, skins, EVERY, arms, np.zeros(2))._replace(**changes)
 
 
 def calm() -> tuple[np.ndarray, np.ndarray]:
@@ -167,16 +167,16 @@ def calm() -> tuple[np.ndarray, np.ndarray]:
 def test_no_step_begins_outside_the_elastic_law_or_with_a_list_that_is_too_old(
     bodies: Bodies, skin: float, reason: int
 ) -> None:
-    watch, model = watched(bodies, skin=skin), stepped(PARTICLES, 150, TIME_STEP)
+    watch, model = watched(bodies, skins=np.full(PARTICLES, 0.5 * skin)), stepped(PARTICLES, 150, TIME_STEP)
     u, v = calm()
     states = model.leapfrog(bodies.forces, u, v)
     done, why, _ = run_kernel(bodies, model, u, v, (watch,))
 
     room = np.array([slack(then, watch.contacts, watch.limits, False) for then, _, _ in states])
-    far = np.array([moved(then, 0, watch.origin) for then, _, _ in states])
+    left = np.array([near.room(then, 0, watch.origin, watch.skins, watch.cells) for then, _, _ in states])
     assert why == reason
     assert 2 < done < 150
-    assert done == np.argmax((room < 0.0) | (2.0 * far > skin))
+    assert done == np.argmax((room < 0.0) | (left < 0.0))
     close(u, states[done][0])
     close(v, states[done][1])
 

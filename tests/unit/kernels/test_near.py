@@ -1,11 +1,11 @@
-"""Near pairs by the grid of cells, and the approach of disks that may meet."""
+"""Near pairs by the grid of cells, and the motion after which others may meet."""
 
 import numpy as np
 import pytest
 
 from dembound.disks.contacts.pair_list import CELL, cells_of
 from dembound.kernels import near
-from dembound.kernels.near import approach
+from dembound.kernels.near import room
 
 
 def by_trial(positions, radii, gap, periods):
@@ -76,26 +76,47 @@ def test_no_two_disks_that_may_meet_have_come_nearer_than_that(periods, length) 
     origin, u = np.full((2, COUNT), 7.0), np.zeros((3, 10 + COUNT))
     u[:, 10 + number] = wave(places, length)
     u[:2, 10:] += 7.0
-    found = approach(u, 10, origin, cells)
+    skins = np.full(COUNT, 0.5)
+    skins[::7] = 0.7
+    found = room(u, 10, origin, skins[np.argsort(number)], cells)
 
     moved = wave(places, length)[:2]
     relative = np.hypot(*(moved[:, :, None] - moved[:, None]))
+    left = skins[:, None] + skins - relative
     near = apart(places, periods) < CELL * 2.0 * RADIUS  # in the same cell or in two that touch
-    assert relative[near].max() <= found <= 2.0 * np.hypot(*moved).max()
-    # disks at opposite ends of neighbouring cells are two cells apart
-    at_most = relative[apart(places, periods) < 3.0 * CELL * 2.0 * RADIUS].max()
-    assert found <= np.sqrt(2.0) * at_most
+    assert found <= left[near].min()
+    # no bound is worse than by the extent of the motion in cells, whose ends are up to three cells apart
+    assert found >= left[apart(places, periods) < 3.0 * CELL * 2.0 * RADIUS].min() - 0.5 * relative.max()
     # any two that meet were near, or one has moved further than cells can tell
     assert np.hypot(*moved).max() < cells.reach
     assert not (relative > apart(places, periods) - 2.0 * RADIUS)[~near].any()
 
 
-def test_disks_that_all_move_along_do_not_come_nearer_and_one_that_runs_away_counts() -> None:
-    cells = cells_of(positions(), np.full(COUNT, RADIUS), np.arange(COUNT), (None, None))
-    u = np.zeros((3, COUNT))
-    u[1, 234] = -0.2
-    assert approach(u, 0, np.zeros((2, COUNT)), cells) == pytest.approx(0.2, rel=1e-15)
-    u[1, 234], u[0] = 0.0, 0.5 * cells.reach
-    assert approach(u, 0, np.zeros((2, COUNT)), cells) == 0.0
+def test_disks_that_all_move_along_keep_their_room_and_a_fast_one_takes_that_of_its_own_skin() -> None:
+    cells, origin = cells_of(positions(), np.full(COUNT, RADIUS), np.arange(COUNT), (None, None)), np.zeros((2, COUNT))
+    u, skins = np.zeros((3, COUNT)), np.full(COUNT, 0.1)
+    u[0] = 0.5 * cells.reach
+    assert room(u, 0, origin, skins, cells) == pytest.approx(0.2, rel=1e-12)
+    u[1, 234] = -0.3
+    assert room(u, 0, origin, skins, cells) == pytest.approx(0.2 - 0.3, rel=1e-12)
+    skins[234] = 0.4
+    assert room(u, 0, origin, skins, cells) == pytest.approx(0.2, rel=1e-12)
+    u[1, 234] = -0.5
+    assert room(u, 0, origin, skins, cells) == pytest.approx(0.5 - 0.5, abs=1e-12)
     u[0] = 1.1 * cells.reach  # so far that disks of any cells may meet
-    assert approach(u, 0, np.zeros((2, COUNT)), cells) == 2.0 * u[0, 0]
+    assert room(u, 0, origin, skins, cells) < 0.0
+
+
+def test_pairs_are_found_among_others_in_either_order() -> None:
+    rng = np.random.default_rng(2)
+    listed, images = rng.integers(0, 30, (200, 2)), rng.integers(-1, 2, (200, 2)).astype(np.int8)
+    asked, turned = rng.permutation(200)[:50], rng.random(50) < 0.5
+    pairs = np.where(turned[:, None], listed[asked][:, ::-1], listed[asked])
+    wanted = np.where(turned[:, None], -images[asked], images[asked])
+    found = near.numbers_of(pairs, wanted, *listed.T, images, 30)
+
+    same = np.hstack([listed, images])[found]
+    other = np.hstack([listed[:, ::-1], -images])[found]
+    asked_for = np.hstack([pairs, wanted])
+    assert ((same == asked_for).all(axis=1) | (other == asked_for).all(axis=1)).all()
+    assert near.numbers_of(pairs, wanted + 5, *listed.T, images, 30).tolist() == [-1] * 50

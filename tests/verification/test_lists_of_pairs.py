@@ -1,0 +1,86 @@
+"""Motion and cracks do not depend, to the bit, on when pairs are listed, nor on how many open ones are.
+
+A pair that parts forgets its shear, one that meets again has the constants as built, and pairs in rows stay listed. So
+the list needs only to be complete, and a pair that is missing from it would be seen.
+"""
+
+import hashlib
+
+import numpy as np
+import pytest
+from small_cases import small
+
+from dembound.disks.contacts import skins
+from dembound.disks.contacts.contact_list import ContactList
+from dembound.motion.simulation import Simulation
+from dembound.running import plan
+
+HEAP = {
+    "packing": {"pattern": "B", "size": [8.0, 8.0], "brick": [4.0, 4.0], "radius": 0.2, "radius_ratio": 1.5, "seed": 2},
+    "material": {"density": 2200.0, "law": "linearpbond", "emod": 2e8, "pb_emod": 0.0, "fric": 0.4, "dp_nratio": 0.2},
+    "boundary": {"bottom": {"type": "fixed"}},
+    "load": [{"name": "weight", "acceleration": [3.0, -9.81]}],
+    "run": {"duration": 1.0},
+    "output": {"pictures": False},
+}
+"""Unbonded disks that tumble to one side."""
+
+ROCK = HEAP | {
+    "material": {
+        "density": 2500.0,
+        "p_wave_speed": 2e3,
+        "law": "linearpbond",
+        "fric": 0.5,
+        "pb_ten": 2e5,
+        "pb_coh": 3e5,
+    },
+    "boundary": {},
+    "load": [{"name": "blow", "region": [3.0, 3.0, 4.0, 4.0], "force": [2e7, 7e6], "wave": "kick"}],
+    "wave": {"kick": {"type": "triangle", "amplitude": 1.0, "rise": 1e-3, "fall": 1e-3}},
+}
+"""Bonded disks in rows of copies, some of which are torn out and thrown through the others."""
+
+
+def outcome(tables, steps: int, every: int = 0) -> tuple[str, list[list[int]], int]:
+    """A digest of the motion after some steps, broken bonds, and the number of listings; every : more of them."""
+    planned, listed = plan(small(tables)), 0
+    run = Simulation(planned.scene, planned.time_step)
+    for each in planned.kind.trackers(run):
+        run.track(each)
+    search = ContactList.search
+
+    def counted(self, *words):
+        nonlocal listed
+        listed += 1
+        search(self, *words)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ContactList, "search", counted)
+        for step in [*range(every, steps, every or steps), steps] if every else [steps]:
+            run.run(step)
+            for pairs in run.system.contacts.values() if every else ():
+                pairs.search(run.state.displacement, run.state.velocity)
+    cracks = run.system.take_cracks(steps)
+    motion = np.ascontiguousarray([run.state.displacement, run.state.velocity])
+    return hashlib.sha256(motion.tobytes()).hexdigest(), cracks.pair.tolist(), listed
+
+
+@pytest.mark.parametrize(("tables", "steps"), [(HEAP, 1500), (ROCK, 2500)], ids=["heap", "rock"])
+def test_listings_change_no_bit(tables, steps, monkeypatch) -> None:
+    *usual, count = outcome(tables, steps)
+    for every, changes in ((1, {}), (7, {}), (0, {"AHEAD": 0.0}), (0, {"AHEAD": 80.0}), (0, {"MOVING": 0.3})):
+        with monkeypatch.context() as patch:
+            for name, value in changes.items():
+                patch.setattr(skins, name, value)
+            *found, other = outcome(tables, steps, every)
+        assert found == usual, (every, changes)
+        assert other > count or not every
+    assert count > 3
+    assert (tables is HEAP) == (usual[1] == [])
+
+
+def test_a_missing_pair_is_seen(monkeypatch) -> None:
+    *usual, _ = outcome(HEAP, 1500)
+    monkeypatch.setattr(ContactList, "is_old", lambda *_: False)
+    *found, _ = outcome(HEAP, 1500)
+    assert found != usual
