@@ -27,8 +27,8 @@ def near_pairs(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pairs (b, 2) of disks with gaps up to the sum of their skins, and the periods (b, 2) between them, each once.
 
-    positions (n, 2), radii (n,), skins (n,) in m. Particles may have moved out of the period, as only differences of positions are
-    used. Periods between a pair are never negative along x, nor along y alone.
+    positions (n, 2), radii (n,), skins (n,) in m. Particles may have moved out of the period, as only differences of
+    positions are used. Periods between a pair are never negative along x, nor along y alone.
     """
     lengths = np.array([length or 0.0 for length in periods])
     pairs, images = near.near_pairs(np.ascontiguousarray(positions), radii + skins, 0.0, lengths)
