@@ -7,8 +7,7 @@ from scenes import ROCK_DENSITY, ROCK_SPEED, STRENGTH, bar, triangle
 
 from dembound.bar.fracture import spalls
 from dembound.bar.linear_steps import carrying_lattices
-from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.scene import BarPart, BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.errors import RunError
 from dembound.exact.dispersion import cells_per_wavelength

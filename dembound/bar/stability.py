@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError

@@ -10,13 +10,12 @@ from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
 from dembound.kernels.calls import Kept
 from dembound.motion.clock import Clock
-from dembound.motion.memory import DRIVEN_BYTES
+from dembound.motion.memory import DRIVEN_BYTES, threads_for
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.sides import NodeSides, Samples
 from dembound.motion.state import State, aligned_zeros
 from dembound.motion.supports import NodeSupports
-from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Records, Tracker, Watch
 
 AT_ONCE = 20_000_000

@@ -12,7 +12,7 @@ import numpy as np
 
 from dembound.accuracy.of_bars.options import FACTORS
 from dembound.accuracy.reference import Exact
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
 from dembound.bar.stability import own_step

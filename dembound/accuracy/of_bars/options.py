@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from dembound.accuracy.choice import COARSER, OWN, Named, changed, keeps, label, valid
 from dembound.bar import stability
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import is_bounded_at_limit, own_step, unit_step
 from dembound.casefile.bar.model import BarCase

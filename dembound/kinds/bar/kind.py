@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from dembound.bar.body import storage_of
 from dembound.bar.linear_steps import front_of_bar, sources_of_bar
-from dembound.bar.memory import storage_of
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step, trials_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase

@@ -7,8 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from dembound.bar.fracture import Spall, breaks_at_ends, crack_strain_rates, spalls
-from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene, bar_medium
+from dembound.bar.scene import BarPart, BarScene, bar_medium
 from dembound.casefile.bar.bar import Bar
 from dembound.gauge.estimates import pull_back_strength
 from dembound.methods.rod import Range
