@@ -17,10 +17,9 @@ from dembound.accuracy.choice import AnyCase, digest
 from dembound.casefile import Case
 from dembound.casefile.tables import ENDING
 from dembound.formulas.history import History, Motions
-from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Records
+from dembound.motion.trackers import Clock, Records
 from dembound.running import Progress, Reports, plan, simulation_of
 from dembound.table import Box
 

@@ -1,14 +1,27 @@
-"""The time step of a bar and its limit, the time of a step, and bars at rest in which noise is stepped."""
+"""The steps of a bar: their length, limit and cost, a linear bar as numpy arrays, and the front of its waves.
+
+Bars at rest, in which noise is stepped, show whether a step is stable.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
+
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 
 from dembound.bar.body import ROUNDING
+from dembound.bar.layers import EndLayer
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
+from dembound.exact.dispersion import Lattice, usual_shares
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Range
 from dembound.motion.part import System
+from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial, at_rest, left_out
 
 STEP, BOND, LAYER_BOND = 250.0, 0.45, 6.0
@@ -141,3 +154,152 @@ def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
         found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True, step_cost=cost))
     stays = ["the method stays at each stage"] if len(stages) > 1 else []
     return found, [f"{scene.count:,} nodes, the whole bar", *left_out(case), *stays]
+
+
+DIGITS = 12
+"""Digits of the share of stress that bonds of one length carry; further digits are rounding errors."""
+
+
+def lattice_of(bonds: Bonds, part: Range, time_step: float) -> Lattice:
+    """The infinite row of nodes with the bonds of the middle of a range; time_step s."""
+    shares = tuple(round(share, DIGITS) for share in bonds.shares(part))
+    horizon = len(shares)
+    usual = shares == tuple(round(share, DIGITS) for share in usual_shares(horizon))
+    return Lattice(horizon, part.spacing, time_step, part.speed, None if usual else shares)
+
+
+def even_lattices(stages: Iterable[Bonds], ranges: Iterable[Range], time_step: float) -> Iterator[Lattice]:
+    """The infinite rows of all stages of a method in all ranges; time_step s.
+
+    Stages in which a zone of other bonds ends in the middle of a range are left out, as the row is not uniform there.
+    """
+    for bonds, part in product(stages, ranges):
+        if math.isclose(sum(bonds.shares(part)), 1.0, rel_tol=10.0**-DIGITS):
+            yield lattice_of(bonds, part, time_step)
+
+
+def carrying_lattices(scene: BarScene, time_step: float) -> list[Lattice]:
+    """For every range the infinite row of nodes in which waves run before the method reacts; time_step s."""
+    bonds = scene.case.method.begin(scene.rod)
+    return [lattice_of(bonds, part, time_step) for part in scene.rod.ranges]
+
+
+def sources_of_bar(case: BarCase) -> list[Source]:
+    """Driven and loaded ends and moving ranges; a load spread over several nodes starts at the innermost one.
+
+    A range that moves at the start sends waves from when it meets the next one until its own wave has returned once.
+    """
+    bar = case.bar
+    speed = min(part.speed for part in bar.parts)
+    places = {"left": 0.0, "right": bar.length}
+    sources = [
+        Source((places[side], 0.0, places[side], 0.0), case.wave[name].start, case.wave[name].duration(), speed)
+        for side, waves in case.driving.items()
+        for name in waves.values()
+    ]
+    for load in case.load:
+        wave, end = case.wave[load.wave], bar.end(load.side)
+        wide = (load.nodes - 1) * end.length / end.cells
+        low, high = (0.0, wide) if load.side == "left" else (bar.length - wide, bar.length)
+        sources.append(Source((low, 0.0, high, 0.0), wave.start, wave.duration(), speed))
+    gaps = sum(given.gap for given in bar.range)
+    for given, part, start in zip(bar.range, bar.parts, bar.starts, strict=False):
+        if given.velocity != 0.0:
+            over = gaps / abs(given.velocity) + 2.0 * part.length / part.speed
+            sources.append(Source((start, 0.0, start + part.length, 0.0), 0.0, over, speed))
+    return sources
+
+
+SAMPLES = 400
+"""Wave numbers at which group speeds are computed, per spacing of the horizon."""
+
+
+def front_of_bar(scene: BarScene, time_step: float) -> Front:
+    """The fastest waves of a bar that is stepped by time_step (s), at any stage of its method.
+
+    With bonds up to m spacings Δx long, phase speeds are c(1 − (kΔx)²((m² + 1)/2 − ν²)/24): a row of nodes bonded to
+    neighbours only that has the same dispersion has at most the spacing Δx√((m² + 1)/2).
+    """
+    ranges = scene.rod.ranges
+    speed = max(part.speed for part in ranges)
+    for row in even_lattices(scene.case.method.stages(scene.rod), ranges, time_step):
+        groups = row.group_velocity(row.shortest * np.linspace(0.0, 1.0, SAMPLES * row.horizon, endpoint=False))
+        speed = max(speed, float(np.nanmax(groups)))
+    horizon = scene.case.method.largest_horizon
+    return Front(speed, max(part.spacing for part in ranges) * float(np.sqrt(0.5 * (horizon**2 + 1))))
+
+
+class LinearSteps:
+    """A bar with its bonds at the start, and layers beyond its ends, in steps of Δt (s).
+
+    Attributes
+    ----------
+    first : number of the bar's first node among all, which are numbered from left to right. count : of the bar's nodes.
+    """
+
+    def __init__(self, scene: BarScene, layers: Mapping[str, EndLayer], step: float) -> None:
+        bonds = scene.case.method.begin(scene.rod)
+        left, right = (layers[side].layer.nodes if side in layers else 0 for side in ("left", "right"))
+        self.first, self.count, self._step = left, scene.count, step
+        nodes = left + scene.count + right
+        own = slice(left, left + scene.count)
+        reach = max([1, bonds.horizon, *(len(each.inner) for each in layers.values())])
+        self._gain, self._bond_keep = np.zeros((reach, nodes)), np.ones((reach, nodes))
+        self._gain[: bonds.horizon, own] = step * bonds.bond
+        self._gain[0, left : left + scene.count - 1] += step * bonds.spring
+        mass, damping, self._ground, decay = np.ones(nodes), np.zeros(nodes), np.zeros(nodes), np.zeros(nodes)
+        mass[own], damping[own] = scene.mass, scene.rod.drag_rate * scene.mass
+        supports = scene.supports
+        along = supports.component == 0
+        held = left + supports.node[along]
+        damping[held], self._ground[held] = supports.damping[along], supports.stiffness[along]
+        for side, layer in layers.items():
+            end, outwards = (left, -1) if side == "left" else (left + scene.count - 1, 1)
+            self._lay(layer, end + outwards * (np.arange(layer.count) - (len(layer.inner) - 1)), outwards)
+            beyond = end + outwards * np.arange(1, layer.layer.nodes + 1)
+            mass[beyond], damping[beyond] = layer.mass, layer.mass * layer.drag_rate
+            decay[beyond] = layer.node_rates[len(layer.inner) :]
+            self._ground[beyond] = layer.ground[len(layer.inner) :]
+        half = 0.5 * step
+        lost, slowed = half * decay, half * damping
+        moves = np.ones(nodes)
+        moves[held[supports.prescribed[along]]] = 0.0
+        self._keep = moves * (1.0 - lost) * (mass - slowed) / ((1.0 + lost) * (mass + slowed))
+        self._mobility = moves * step / ((1.0 + lost) * (mass + slowed))
+
+    def _lay(self, layer: EndLayer, place: np.ndarray, outwards: int) -> None:
+        """Add the bonds of a layer; place : the numbers of its nodes and of the bar nodes that it is bonded to."""
+        half = 0.5 * self._step
+        for row, (stiffness, rate) in enumerate(zip(layer.bonds, layer.bond_rates, strict=True)):
+            begins = np.flatnonzero(stiffness > 0.0)
+            here = place[begins] if outwards > 0 else place[begins + row + 1]
+            self._gain[row, here] += self._step * stiffness[begins] / (1.0 + half * rate[begins])
+            self._bond_keep[row, here] = (1.0 - half * rate[begins]) / (1.0 + half * rate[begins])
+
+    def after(self, force: np.ndarray, motion: np.ndarray, steps: int) -> np.ndarray:
+        """Velocities (steps, n) m/s of the bar's nodes after forces (n,) N, and motions (n,) m/s, of the first step.
+
+        motion : of nodes whose motion is prescribed, 0 for others.
+        """
+        reach, nodes = self._gain.shape
+        own = slice(self.first, self.first + self.count)
+        padded, pulled = np.zeros(nodes + reach), np.zeros((reach, nodes + reach))
+        v, u, f = padded[:nodes], np.zeros(nodes), pulled[:, reach:]
+        # row p − 1 of `ahead` has v at i + p, of `behind` the force of the bond that begins at i − p
+        ahead = as_strided(padded[1:], (reach, nodes), (padded.itemsize, padded.itemsize), writeable=False)
+        row, column = pulled.strides
+        behind = as_strided(pulled[:, reach - 1 :], (reach, nodes), (row - column, column), writeable=False)
+        found = np.empty((steps, self.count))
+        for number in range(steps):
+            f *= self._bond_keep
+            f += self._gain * (ahead - v)
+            pull = f.sum(axis=0) - behind.sum(axis=0) - self._ground * u
+            if number == 0:
+                pull[own] += force
+            v *= self._keep
+            v += self._mobility * pull
+            if number == 0:
+                v[own] += motion
+            u += self._step * v
+            found[number] = v[own]
+        return found

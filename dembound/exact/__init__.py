@@ -4,9 +4,8 @@ They import nothing about disks, cases or runs. Arguments are numbers and arrays
 """
 
 from dembound.exact.bar import bar_stress, bar_velocity, triangle_spall
-from dembound.exact.cavity import CavityMotion, cavity_moment, cavity_motion
 from dembound.exact.dispersion import Lattice, cells_per_wavelength, courant_limit
-from dembound.exact.garvin import buried_explosion
+from dembound.exact.explosion import CavityMotion, buried_explosion, cavity_moment, cavity_motion
 from dembound.exact.lamb import rayleigh_speed, surface_displacement
 from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.scattering import PlaneWave, ScatteredMotion, scattered_motion

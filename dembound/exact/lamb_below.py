@@ -9,7 +9,7 @@ In the notation of `exact/lamb.py` the load F(t) moves the place at x, z by a su
     S      η_b z     −2pη_aη_b/R       2p²η_a/R
 
 On the surface both have τ = px, and their sum is the solution there. With L = √(x² + z²) both paths are hyperbolas as
-in `exact/garvin.py`, from τ = aL and bL on. Where x/L > a/b, S begins with the head wave: p real from a to bx/L.
+in `exact/explosion.py`, from τ = aL and bL on. Where x/L > a/b, S begins with the head wave: p real from a to bx/L.
 
 Rayleigh's pole lies z√(p_R² − b²) beside the real time p_R x, towards which intervals of integration become shorter.
 """

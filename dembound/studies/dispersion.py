@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from dembound.bar.linear_steps import even_lattices
 from dembound.bar.scene import build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import choose_step, even_lattices
 from dembound.casefile import Case
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.casefile.bar.bar import LARGEST, SMALLEST

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, label
-from dembound.accuracy.judges import MOST, extended, judge_of
+from dembound.accuracy.judge import MOST, extended, judge_of
 from dembound.accuracy.reference import Exact, FinerRun, Reference
 from dembound.accuracy.runner import Run
 from dembound.boundaries import SIDES as SIDE_NAMES

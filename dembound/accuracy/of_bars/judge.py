@@ -10,18 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.judge import Judge
-from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
-from dembound.accuracy.of_bars.causes import causes_of_bar
-from dembound.accuracy.of_bars.exact import PulseInBar
+from dembound.accuracy.judge import Extended, Judge, movable, must_not_exceed, same_step, sentence_of
+from dembound.accuracy.of_bars.causes import PulseInBar, causes_of_bar
 from dembound.accuracy.of_bars.options import bar_choices
 from dembound.accuracy.of_bars.search import advice_for_bar
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Watch
 from dembound.accuracy.runner import STEP_AND_END, Run
-from dembound.accuracy.watch import Watch
-from dembound.bar.linear_steps import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import choose_step, front_of_bar, sources_of_bar
 from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.model import Case

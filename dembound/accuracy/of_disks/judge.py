@@ -10,10 +10,10 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import OWN, Choice, Named
-from dembound.accuracy.judge import Judge
-from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates
+from dembound.accuracy.judge import Extended, Judge
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates, disk_choices
 from dembound.accuracy.of_disks.causes import (
+    Formulas,
     causes_of_choice,
     causes_of_run,
     entry_notes,
@@ -21,25 +21,22 @@ from dembound.accuracy.of_disks.causes import (
     quick_causes,
     rest_causes,
 )
-from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.enlarged import extended_disks
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLayeredColumn, ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
+from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.of_disks.search import Search, before_breaks
-from dembound.accuracy.of_disks.seeds import cause_of_packing
-from dembound.accuracy.proposal import Advice, Proposal
+from dembound.accuracy.proposal import Advice, Proposal, Watch
 from dembound.accuracy.reference import Exact
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
-from dembound.accuracy.watch import Watch
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.formulas.cause import Causes, Truth
-from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.rest import causes_of_rest
 from dembound.formulas.history import Motions

@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import create_model, model_validator
 
-from dembound.casefile.disks.law import FIELDS, keys_problems, with_history
-from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Scatter, Target
+from dembound.casefile.disks.targets import FIELDS, PAIRS, PlaneModuli, Scatter, Target, keys_problems, with_history
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 

@@ -8,16 +8,22 @@ from pydantic import TypeAdapter
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.platen import beside_disks
-from dembound.casefile.disks.damping import Damping, damping_problems, is_damped
 from dembound.casefile.disks.ground import Ground, ground_problems, hole_problems, lowered_in, lowered_problems, reach
-from dembound.casefile.disks.incident import IncidentWave, Motion, incident_problems, motion_problems
-from dembound.casefile.disks.law import law_problems, with_history
-from dembound.casefile.disks.layer import Layer, completed_by_layers, layer_problems
+from dembound.casefile.disks.incident import (
+    Damping,
+    IncidentWave,
+    Motion,
+    damping_problems,
+    incident_problems,
+    is_damped,
+    motion_problems,
+)
+from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
-from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static, static_problems
+from dembound.casefile.disks.targets import law_problems, with_history
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
     Schema,

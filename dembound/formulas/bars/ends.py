@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.bar.layers import EndLayer
-from dembound.bar.linear_steps import LinearSteps
 from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.stability import LinearSteps
 from dembound.boundaries.boundary import Layer
 from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.casefile.bar.model import BarCase

@@ -24,8 +24,7 @@ from dembound.accuracy.of_disks.exact.problem import (
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
-from dembound.exact.cavity import cavity_moment, cavity_motion
-from dembound.exact.garvin import buried_explosion
+from dembound.exact.explosion import buried_explosion, cavity_moment, cavity_motion
 from dembound.exact.solid import Solid
 from dembound.formulas.history import History
 from dembound.holes import Circle
