@@ -9,7 +9,7 @@ from dembound.bar.fracture import spalls
 from dembound.bar.scene import BarPart, BarScene, build_bar
 from dembound.bar.stability import carrying_lattices, choose_step
 from dembound.errors import RunError
-from dembound.exact.dispersion import cells_per_wavelength
+from dembound.exact.bar import cells_per_wavelength
 from dembound.gauge.estimates import pull_back_strength
 from dembound.kinds import kind_of
 from dembound.methods.bonds import Bonds

@@ -66,7 +66,8 @@ def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget,
     with open_record(record) as file:
         require_run(file)
     summary = _summary(folder)
-    case, cracked = _until(recorded_case(record), summary), Cracked.of(record)
+    case, cracked = recorded_case(record), Cracked.of(record)
+    case = replace(case, run=case.run.lasting(summary["duration"]))
     recorded, lack = _recorded(record, cracked.first)
     one_draw = list(cracked.one_draw())
     if lack and not (repeat or one_draw):
@@ -80,7 +81,7 @@ def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget,
 
 def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any], watch: Watch | None) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
-    broken = [] if case.run.duration < until else [_broken(until)]
+    broken = [] if case.run.duration < until else [f"motion after {until:.4g} s, when the first bond broke"]
     case = replace(case, run=case.run.lasting(min(case.run.duration, until)))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work, watch)
@@ -129,16 +130,6 @@ def _summary(folder: Path) -> dict[str, Any]:
     if not all(isinstance(each, int | float) and each >= 0.0 for each in numbers):
         raise RecordError([f"{folder / 'summary.json'}: is damaged, a duration or a number of steps is none"])
     return found
-
-
-def _until(case: Case, summary: Mapping[str, Any]) -> Case:
-    """The case to the time at which its run has ended."""
-    return replace(case, run=case.run.lasting(summary["duration"]))
-
-
-def _broken(first: float) -> str:
-    """The line that motion after the first break of a bond, at a time (s), is not estimated."""
-    return f"motion after {first:.4g} s, when the first bond broke"
 
 
 def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:

@@ -55,27 +55,17 @@ def movable(case: Case, loaded: Sequence[str] = ()) -> list[str]:
     artificial = [side for side in SIDES if case.side(side).is_artificial]
     moving = [side for side in artificial if case.side(side).may_move and side not in loaded]
     if artificial and not moving:
-        raise CaseError(
-            [
-                f"boundary.{side}: lets motion in, so it cannot move away without changing that; no other side is "
-                "artificial, and the scene cannot be extended"
-                for side in artificial[:1]
-            ],
-            case.name,
-        )
+        reason = "lets motion in, so it cannot move away without changing that; no other side is artificial"
+        raise CaseError([f"boundary.{artificial[0]}: {reason}, and the scene cannot be extended"], case.name)
     return moving
 
 
 def must_not_exceed(count: int, most: int, size: str, case: Case) -> None:
     """Raise CaseError for a scene that is too large."""
     if count > most:
-        raise CaseError(
-            [
-                f"run.duration: is {case.run.duration:g} s, for which nothing returns only in a scene of {size} with "
-                f"{count:,} particles, more than {most:,}; take a shorter run, or coarser particles"
-            ],
-            case.name,
-        )
+        scene = f"a scene of {size} with {count:,} particles, more than {most:,}"
+        what = f"run.duration: is {case.run.duration:g} s, for which nothing returns only in {scene}"
+        raise CaseError([f"{what}; take a shorter run, or coarser particles"], case.name)
 
 
 def sentence_of(case: Case, what: str, moving: list[str]) -> str:

@@ -17,7 +17,7 @@ from dembound.bar.layers import EndLayer
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, usual_shares
+from dembound.exact.bar import Lattice, usual_shares
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Range
 from dembound.motion.part import System

@@ -56,6 +56,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.exact.lamb import refined
 from dembound.exact.solid import Solid
 from dembound.exact.transform import Signal, respond
 from dembound.roots import root
@@ -193,16 +194,12 @@ def buried_explosion(
         raise ValueError("the place is at the source, where the motion is infinite")
     times = np.asarray(times, dtype=float)
     rays = _rays(abs(distance), depth, source_depth, solid)
-    panels, change = FEWEST_PANELS, math.inf
-    finer = _sum(rays, times, moment_rate, panels)
-    while change > tolerance * np.abs(finer).max(initial=0.0):
-        if panels == MOST_PANELS:
-            raise RuntimeError(f"Garvin's integral did not converge to {tolerance:g}: is the rate continuous?")
-        panels *= 2
-        coarser, finer = finer, _sum(rays, times, moment_rate, panels)
-        change = np.abs(finer - coarser).max(initial=0.0)
-    finer[0] *= np.sign(distance)
-    return finer / (2.0 * math.pi * solid.uniaxial)
+    panels = FEWEST_PANELS, MOST_PANELS
+    found = refined(
+        lambda number: _sum(rays, times, moment_rate, number), panels, tolerance, "Garvin's integral", "rate"
+    )
+    found[0] *= np.sign(distance)
+    return found / (2.0 * math.pi * solid.uniaxial)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from dembound.casefile.bar.bar import LARGEST, SMALLEST
 from dembound.casefile.model import as_kind
 from dembound.casefile.reader import loads
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, usual_shares
+from dembound.exact.bar import Lattice, usual_shares
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST

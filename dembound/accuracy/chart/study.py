@@ -147,7 +147,7 @@ class Options:
 class Line:
     """A choice in the chart: its results and the errors of its monitors, the largest first; none after a failure.
 
-    point : its total error and cost (CPU seconds), after `front.points_of`.
+    point : its total error and cost (CPU seconds), after `points_of`.
     """
 
     choice: Choice

@@ -235,8 +235,6 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
 HORIZON = 3
 """Horizon of bars' methods where the case has none."""
 
-"""Keys of ``[run]`` that determine the step of a bar."""
-
 
 def bar_choices(case: BarCase) -> Named:
     """The case itself, every method with every spacing at its automatic step, and finite differences at ν = 1.

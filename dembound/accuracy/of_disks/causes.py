@@ -226,8 +226,12 @@ def causes_of_choice(
     ground = ground or ground_causes(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
-        sides = sides_cause(companions, scene, time_step, wider)
-        found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)
+        sides, missing, notes = sides_cause(companions, scene, time_step, wider), [], []
+        if math.isfinite(companions.first_break):
+            missing = [f"{SIDES} after {companions.first_break:.3g} s, when bonds break in the companion"]
+        if not companions.echo_free:
+            notes = [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]
+        found += Causes([sides], missing, notes, 0.0, companions.echo_free)
     return found
 
 
@@ -302,17 +306,3 @@ def _not_counted(scene: DiskScene) -> list[str]:
     held = HeldSides(scene).driven_under_loads
     words = "disks are held at centres, inside of the plane, so that waves of loads come back a little early"
     return [f"{' and '.join(held)}: {words}: not counted"] if held else []
-
-
-def _breaks(companions: Companions) -> list[str]:
-    """A line with the time up to which sides are compared, if bonds break in the companion."""
-    if not math.isfinite(companions.first_break):
-        return []
-    return [f"{SIDES} after {companions.first_break:.3g} s, when bonds break in the companion"]
-
-
-def _echoes(companions: Companions) -> list[str]:
-    """A line that the far companion is too small to be free of echoes, where it is."""
-    if companions.echo_free:
-        return []
-    return [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]

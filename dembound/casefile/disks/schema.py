@@ -28,12 +28,9 @@ from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
     Schema,
     driving_waves,
+    monitor_problems,
     never_estimated,
-    never_past_peak,
-    never_silent,
-    repeated_names,
-    steps_too_long,
-    too_many,
+    run_problems,
     unknown_waves,
 )
 from dembound.casefile.tables import Chart, Output, Sweep
@@ -67,9 +64,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["packing"]:
         for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
             yield from _nothing_to_pack_with(place, table, tables["packing"])
-    for key in ("hole", "load", "monitor"):
-        yield from repeated_names(key, tables[key])
-    yield from too_many(tables["monitor"])
+    yield from monitor_problems(tables)
     yield from pressed_side_problems(numbered("load", tables["load"]), tables)
     yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
@@ -95,11 +90,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         yield from static_problems(*settling, has_column=not lowered_in(tables))
     if tables["run"]:
-        yield from steps_too_long(tables["run"], tables["output"])
-        yield from never_silent(tables["run"], tables["monitor"])
-        yield from never_past_peak(tables["run"], tables["boundary"])
+        yield from run_problems(tables)
     if tables["output"]:
-        yield from never_estimated(tables["output"], tables["monitor"])
+        yield from never_estimated(tables)
 
 
 def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:

@@ -15,7 +15,7 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import COARSEST, Bar, BarRange
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted, show
-from dembound.exact.dispersion import cells_per_wavelength
+from dembound.exact.bar import cells_per_wavelength
 from dembound.formulas.bars.ends import ROUNDING, returned_of_waves
 from dembound.gauge.estimates import pull_back_strength
 from dembound.methods.rod import Range
