@@ -14,9 +14,8 @@ import pytest
 
 from dembound.api import case
 from dembound.bar.scene import build_bar
-from dembound.bar.stability import LinearSteps
 from dembound.formulas.bars import ends as echoes
-from dembound.formulas.bars.ends import Returned, returned_of_waves
+from dembound.formulas.bars.ends import LinearSteps, Returned, returned_of_waves
 from dembound.kinds.bar.summary import bar_facts
 from dembound.motion.simulation import Simulation
 
