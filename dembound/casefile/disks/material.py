@@ -249,12 +249,9 @@ class MaterialTable(Table):
         if pair == PAIRS[2]:
             if "plane" in self.model_fields_set:
                 problems.append("plane: is only allowed together with young and poisson, or bulk and shear")
-            if (
-                self.s_wave_speed is not None
-                and self.p_wave_speed is not None
-                and self.s_wave_speed >= self.p_wave_speed
-            ):
-                problems.append(f"s_wave_speed: is {self.s_wave_speed:g}, must be less than p_wave_speed")
+            p_speed, s_speed = self.p_wave_speed, self.s_wave_speed
+            if s_speed is not None and p_speed is not None and s_speed >= p_speed:
+                problems.append(f"s_wave_speed: is {s_speed:g}, must be less than p_wave_speed")
         if pair == PAIRS[1] and self.along != "isotropic":
             problems.append('along: is of waves or of a test; with bulk and shear it must be "isotropic"')
         if self.poisson is not None and self.plane == "strain" and self.poisson >= 0.5:

@@ -180,8 +180,7 @@ def _as_small(scene: DiskScene, error: float) -> str:
 
 def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     """Begin, depth and reflection of the layers, in words."""
-    settings = outside.settings
-    mesh = outside.body.mesh
+    settings, mesh = outside.settings, outside.body.mesh
     low, high = mesh.between_layers
     left, right, bottom, top = mesh.sides
     distances = left - low[0], high[0] - right, bottom - low[1], high[1] - top
