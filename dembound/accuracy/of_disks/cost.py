@@ -236,7 +236,7 @@ class Counted:
             grid, element = self._grid(case)
         elif (axis := self._rows_alike) is not None:
             disks /= case.packing.copies[axis]
-        step = self._step(case, element)
+        step = self._steps.of(case, element)
         steps = max(1, math.ceil(case.run.duration / step - 1e-9))
         in_rows = stands_in_rows(case)
         absorbing = grid.nodes * grid.absorbing / grid.elements if grid.elements else 0.0
@@ -258,8 +258,8 @@ class Counted:
 
     def _grid(self, case: DiskCase) -> tuple[GridSizes, tuple[float, float]]:
         """Numbers of nodes and ties of the continuum, and width and height (m) of its elements beside the disks."""
-        packing, sides = case.packing, case.outside_sides
-        box, diameter = packing.box, self._diameter * packing.radius / self.given.scene.case.packing.radius
+        packing, sides, given = case.packing, case.outside_sides, self.given.scene
+        box, diameter = packing.box, given.ground.brick.mean_diameter * packing.radius / given.case.packing.radius
         settings = settings_of(case, self._medium, diameter, box, sides)
         surface = case.box[3] if "top" in sides and "top" in packing.gaps(case.box) else None
         tops = None if any(case.periodic) else expected_tops(case, box)
@@ -272,10 +272,6 @@ class Counted:
             )
         element = settings.sides(packing.extent[0], packing.extent[1])
         return grid, element
-
-    def _step(self, case: DiskCase, element: tuple[float, float] | None) -> float:
-        """The time step, s; the planned one scaled where only the size of the disks differs."""
-        return self._steps.of(case, element)
 
     def _drives(self, ties: float) -> float:
         """Nanoseconds per step of the forces by which an oblique wave enters, in proportion to the ties."""
@@ -298,10 +294,6 @@ class Counted:
     @cached_property
     def _medium(self) -> Beyond:
         return medium_of(self.given.scene.ground)
-
-    @property
-    def _diameter(self) -> float:
-        return self.given.scene.ground.brick.mean_diameter
 
 
 def _hollow(case: DiskCase) -> float:

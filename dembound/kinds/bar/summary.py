@@ -42,6 +42,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
     """Additional entries of a summary for bars: plain JSON values, SI units."""
     bar = part_of(run)
     found, at_ends = spalls_of(scene, run)
+    note = AT_ONE_HORIZON if scene.case.bar.opens else LATER_SPALLS  # whether later spalls converge
     return {
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
@@ -49,7 +50,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "courant": max(run.time_step * part.speed / part.spacing for part in scene.rod.ranges),
         "spalls": [spall.describe() for spall in found],
         "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
-        "spalls_note": _note(scene) if len(found) > 1 else None,
+        "spalls_note": note if len(found) > 1 else None,
         "open_contacts": _open_contacts(scene, bar),
         "crack_strain_rates": crack_strain_rates(bar.bonds),
         "bar": describe_bar(scene),
@@ -57,11 +58,6 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "stress": _largest_stresses(record),
         "pull_back_strength": _pull_backs(scene, record) if found else {},
     }
-
-
-def _note(scene: BarScene) -> str:
-    """A note on whether spalls after the first converge."""
-    return AT_ONE_HORIZON if scene.case.bar.opens else LATER_SPALLS
 
 
 def _open_contacts(scene: BarScene, bar: BarPart) -> list[str]:
