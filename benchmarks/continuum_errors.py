@@ -138,7 +138,7 @@ def scenes() -> Iterator[tuple[str, Tables]]:
 
 def rows(name: str, tables: Tables) -> Iterator[dict[str, Any]]:
     """Rows of the table for one scene: monitors that move at least 1 % as much as the loudest."""
-    from dembound.accuracy.judges import extended
+    from dembound.accuracy.judge import extended
     from dembound.accuracy.runner import at_step, measure
     from dembound.disks.scene import build
     from dembound.disks.stability import choose_step

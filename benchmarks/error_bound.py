@@ -22,8 +22,8 @@ import numpy as np
 import tomli_w
 from error_bound_scenes import scenes
 
-from dembound.accuracy.advise import advise
-from dembound.accuracy.judges import extended
+from dembound.accuracy.estimate import advise
+from dembound.accuracy.judge import extended
 from dembound.accuracy.of_disks.candidates import COSTLIEST
 from dembound.accuracy.of_disks.options import Built, Options
 from dembound.accuracy.runner import measure

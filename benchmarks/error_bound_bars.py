@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from estimated_bars import SCENES, exact, recorded_of, scene
 
-from dembound.accuracy.advise import advise
+from dembound.accuracy.estimate import advise
 from dembound.accuracy.of_bars.options import bar_options
 from dembound.accuracy.of_bars.search import MARGIN, Floors, Motion, affordable, cheapest, given_motion
 from dembound.casefile.bar import BarCase

@@ -61,7 +61,7 @@ def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[s
 
 def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
     """Records of the monitors of the reference."""
-    from dembound.accuracy.judges import extended
+    from dembound.accuracy.judge import extended
     from dembound.accuracy.runner import measure
     from dembound.kinds import with_changes
     from dembound.running import Progress

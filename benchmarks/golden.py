@@ -120,7 +120,7 @@ def choices() -> Iterator[tuple[str, Callable[[], Found]]]:
     """The choice for each bound in the scenes of the benchmark of choices."""
     from error_bound_scenes import scenes
 
-    from dembound.accuracy.advise import advise
+    from dembound.accuracy.estimate import advise
     from dembound.kinds import loads
 
     for name, tables in scenes():

@@ -177,7 +177,7 @@ MOST = {"few": 3e4, "one": 3e4}
 
 def measured(name: str, count: float, folder: Path) -> dict[str, Any]:
     """One row of the table: RAM as computed, before and after the scene is built, and as measured."""
-    from dembound.bar.memory import run_bytes
+    from dembound.bar.body import run_bytes
     from dembound.casefile.bar import BarCase
     from dembound.disks.memory import expected_bytes
     from dembound.running import plan

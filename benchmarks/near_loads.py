@@ -16,7 +16,7 @@ import tomli_w
 from error_bound import FINER, far_motion
 from scene_tables import ISOTROPIC, ROCK, SIDES, VISCOUS, lattice, monitors
 
-from dembound.formulas.disks.near_loads import errors_near_loads
+from dembound.formulas.disks.near_disks import errors_near_loads
 from dembound.formulas.history import History
 from dembound.kinds import loads, with_changes
 from dembound.running import plan

@@ -32,8 +32,8 @@ from timing import ROOT, Times, in_one_line, machine, quartiles, show, timed, wr
 from traffic import cost_of_step
 
 from dembound.kernels import loop
+from dembound.motion.memory import thread_count_for
 from dembound.motion.simulation import Simulation
-from dembound.motion.threads import thread_count_for
 
 CASES = {
     "quickstart": "quickstart",

@@ -148,7 +148,7 @@ def shortened(case: Any, seconds: float) -> Any:
 
 def not_made(case: Any, reduction: str) -> str:
     """Why a reduction was not made that only a run decides about; empty if it was."""
-    from dembound.motion.clock import Clock
+    from dembound.motion.trackers import Clock
     from dembound.running import Progress, plan, simulation_of
 
     if reduction not in ("settled", "silent"):

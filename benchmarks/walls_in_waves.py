@@ -94,7 +94,7 @@ def canyon(n: float, long: float, kind: str, angle: float) -> Measured:
 def ratios(measured: Measured) -> Iterator[tuple[float, float]]:
     """Expected over true errors by monitor and quantity: of the larger component, and that over the smaller one's."""
     from dembound.disks.scene import build
-    from dembound.formulas.disks.walls import wall_errors
+    from dembound.formulas.disks.near_disks import wall_errors
 
     case, own, expected, every = measured
     ground = build(case).ground

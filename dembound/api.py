@@ -15,10 +15,9 @@ import numpy as np
 import tomli_w
 
 from dembound import kinds
-from dembound.accuracy.advise import BOUNDS
-from dembound.accuracy.advise import advise as find_advice
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.estimate import estimate_if_asked, estimate_results
+from dembound.accuracy.estimate import BOUNDS, estimate_if_asked, estimate_results
+from dembound.accuracy.estimate import advise as find_advice
 from dembound.accuracy.proposal import Advice
 from dembound.boundaries import Motion
 from dembound.casefile import Case

@@ -6,10 +6,9 @@ from pathlib import Path
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, RunError
-from dembound.formulas.first_echoes import echoes
 from dembound.machine import memory_here
 from dembound.motion.endings import peak_rule, silent_rule
-from dembound.motion.kind import Plan
+from dembound.motion.kind import Plan, echoes
 from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.simulation import Simulation
 from dembound.results.histories import split_in_words
@@ -62,7 +61,7 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
 
 def _errors(planned: Plan) -> Entries:
     """Errors of a run that formulas give without its motion, and the command that estimates other errors."""
-    from dembound.accuracy.judges import judge_of
+    from dembound.accuracy.judge import judge_of
 
     case = planned.scene.case
     if not case.monitor:

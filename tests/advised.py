@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from dembound.accuracy.advise import advise
 from dembound.accuracy.choice import Choice
+from dembound.accuracy.estimate import advise
 from dembound.casefile import Case
 
 

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 import dembound
 from dembound.disks.scene import build, ground_of
 from dembound.disks.stability import choose_step
-from dembound.exact.cavity import cavity_motion
+from dembound.exact.explosion import cavity_motion
 from dembound.exact.solid import Solid
 from dembound.motion.simulation import Simulation
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from records import MILLI, markdown
 
-from dembound.exact.dispersion import Lattice, cells_per_wavelength
+from dembound.exact.bar import Lattice, cells_per_wavelength
 from dembound.plot.reflection import plot_dispersion
 from dembound.plot.style import save
 

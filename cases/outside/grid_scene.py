@@ -10,12 +10,11 @@ from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
 from dembound.casefile.tables import Run
 from dembound.continuum.part import GridBody, GridPart
-from dembound.motion.memory import total
+from dembound.motion.memory import thread_count_for, total
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.stability import largest_eigenvalue
 from dembound.motion.state import Layout
-from dembound.motion.threads import thread_count_for
 
 
 class GridScene(Scene):

@@ -6,12 +6,10 @@ import numpy as np
 from scenes import ROCK_DENSITY, ROCK_SPEED, STRENGTH, bar, triangle
 
 from dembound.bar.fracture import spalls
-from dembound.bar.linear_steps import carrying_lattices
-from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.scene import BarPart, BarScene, build_bar
+from dembound.bar.stability import carrying_lattices, choose_step
 from dembound.errors import RunError
-from dembound.exact.dispersion import cells_per_wavelength
+from dembound.exact.bar import cells_per_wavelength
 from dembound.gauge.estimates import pull_back_strength
 from dembound.kinds import kind_of
 from dembound.methods.bonds import Bonds

@@ -1,4 +1,4 @@
-"""The error of a run from its folder of results, to which the estimate is added."""
+"""Errors of a case of any kind: of a run from its folder of results, and the cheapest choices with smaller errors."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.judges import judge_of
+from dembound.accuracy.choice import value_at
+from dembound.accuracy.judge import judge_of
+from dembound.accuracy.proposal import Advice, Watch
 from dembound.accuracy.repeat import Cracked, repeated
 from dembound.accuracy.runner import BUDGET, SHORT
-from dembound.accuracy.watch import Watch
 from dembound.casefile import Case
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import require_writable
-from dembound.formulas.cause import Causes
+from dembound.formulas.cause import Causes, Truth
 from dembound.formulas.history import History, Motions
-from dembound.motion.clock import Clock
+from dembound.motion.trackers import Clock
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
 from dembound.results.histories import FILE, FREE_FIELD, KEY, Named
@@ -65,7 +66,8 @@ def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget,
     with open_record(record) as file:
         require_run(file)
     summary = _summary(folder)
-    case, cracked = _until(recorded_case(record), summary), Cracked.of(record)
+    case, cracked = recorded_case(record), Cracked.of(record)
+    case = replace(case, run=case.run.lasting(summary["duration"]))
     recorded, lack = _recorded(record, cracked.first)
     one_draw = list(cracked.one_draw())
     if lack and not (repeat or one_draw):
@@ -79,7 +81,7 @@ def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget,
 
 def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any], watch: Watch | None) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
-    broken = [] if case.run.duration < until else [_broken(until)]
+    broken = [] if case.run.duration < until else [f"motion after {until:.4g} s, when the first bond broke"]
     case = replace(case, run=case.run.lasting(min(case.run.duration, until)))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work, watch)
@@ -128,16 +130,6 @@ def _summary(folder: Path) -> dict[str, Any]:
     if not all(isinstance(each, int | float) and each >= 0.0 for each in numbers):
         raise RecordError([f"{folder / 'summary.json'}: is damaged, a duration or a number of steps is none"])
     return found
-
-
-def _until(case: Case, summary: Mapping[str, Any]) -> Case:
-    """The case to the time at which its run has ended."""
-    return replace(case, run=case.run.lasting(summary["duration"]))
-
-
-def _broken(first: float) -> str:
-    """The line that motion after the first break of a bond, at a time (s), is not estimated."""
-    return f"motion after {first:.4g} s, when the first bond broke"
 
 
 def _recorded(record: Path, until: float) -> tuple[dict[str, History], str]:
@@ -202,3 +194,42 @@ def _write_quantity(group: Any, found: Budget, recorded: History, name: str, qua
     write(inner, "band", found.band(name, quantity), unit)
     if (correction := found.correction(name, quantity)) is not None:
         write(inner, "corrected", recorded.values[quantity] - correction, unit)
+
+
+BOUNDS = (0.1, 0.03, 0.01, 0.003)
+"""Errors for which the cheapest choices are found where none is asked for."""
+
+
+def advise(
+    case: Case,
+    bounds: Sequence[float] = BOUNDS,
+    of: Truth | None = None,
+    kept: Sequence[str] = (),
+    seeds: int = 1,
+    longest: float | None = None,
+    watch: Watch | None = None,
+) -> Advice:
+    """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
+
+    bounds : errors, RMS over RMS, such as 0.01, of velocity and displacement (of bars also stress) at all monitors
+    whose motion is not negligible. of : "disks": errors relative to the disks as the material; "rock": relative to the
+    rock that they discretise; None: "disks" where packings are random or bonds may break. kept : dotted keys whose
+    values do not change, such as ``packing.radius`` or ``boundary``. seeds : number of random packings run to find the
+    scatter between packings. longest : CPU seconds that the steps of a choice may take; by default 60 for disks, for
+    bars 64 times the CPU seconds of the case. watch : told of what is done, and of what is
+    known before all is.
+
+    Raises CaseError for cases without monitors, without motion at them, or whose errors are not known, for a bound that
+    is not a positive number and for unknown keys; the errors of building a scene and of running companions.
+    """
+    for bound in bounds:
+        if not 0.0 < bound < 1.0:
+            raise CaseError([f"--error: is {bound:g}, must be above 0 and below 1, such as 1% or 0.01"])
+    if not case.monitor:
+        raise CaseError(["advise: needs a monitor, at which errors are known; give a [[monitor]]"], case.name)
+    for key in kept:
+        value_at(case, key)
+    judge, clock = judge_of(case), Clock(time.process_time)
+    with clock.with_compiling(), clock.of("advise"):
+        found = judge.advise(case, bounds, of or judge.truth(case), kept, longest, seeds, watch or Watch())
+    return replace(found, cpu_seconds=clock.seconds["advise"])

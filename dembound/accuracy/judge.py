@@ -1,23 +1,96 @@
-"""The interface by which every kind of body gives the errors of its cases, and the choices advised for one."""
+"""How every kind of body gives the errors of its cases, advised choices, and enlarged scenes; the judge of a case."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pkgutil import resolve_name
 from typing import Any, ClassVar, Generic, TypeVar
 
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Watch
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
-from dembound.accuracy.watch import Watch
-from dembound.casefile.model import Case
+from dembound.boundaries import SIDES
+from dembound.casefile import Case, tables
 from dembound.errors import CaseError
 from dembound.formulas.cause import Causes, Truth
 from dembound.formulas.history import Motions
 from dembound.motion.scene import Scene
 from dembound.results.histories import Quantity
+from dembound.schemas import body_of
+from dembound.table import Box
+
+LESS = 0.95
+"""Largest `run.safety` with which the step of the case is also stable in the larger scene.
+
+There the disks of a moved side have more neighbours, and the limit of the step may be some per cent smaller. With a
+larger safety the step remains "auto".
+"""
+
+R = TypeVar("R", bound=tables.Run)
+
+
+@dataclass(frozen=True)
+class Extended:
+    """An enlarged case.
+
+    case : the enlarged case, named as the case with "_extended"; the case itself if no side has to move.
+    sentence : its size, the number of its particles, and from which sides nothing returns.
+    inside : rectangle of the given case's scene in the enlarged one, m; a bar begins at zero whatever its length.
+    """
+
+    case: Case
+    sentence: str
+    inside: Box
+
+
+def movable(case: Case, loaded: Sequence[str] = ()) -> list[str]:
+    """The artificial sides that can move; loaded : sides on which loads act.
+
+    Raises CaseError if there are artificial ones, and none can move.
+    """
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    moving = [side for side in artificial if case.side(side).may_move and side not in loaded]
+    if artificial and not moving:
+        reason = "lets motion in, so it cannot move away without changing that; no other side is artificial"
+        raise CaseError([f"boundary.{artificial[0]}: {reason}, and the scene cannot be extended"], case.name)
+    return moving
+
+
+def must_not_exceed(count: int, most: int, size: str, case: Case) -> None:
+    """Raise CaseError for a scene that is too large."""
+    if count > most:
+        scene = f"a scene of {size} with {count:,} particles, more than {most:,}"
+        what = f"run.duration: is {case.run.duration:g} s, for which nothing returns only in {scene}"
+        raise CaseError([f"{what}; take a shorter run, or coarser particles"], case.name)
+
+
+def sentence_of(case: Case, what: str, moving: list[str]) -> str:
+    """The size of the enlarged scene, and the sides from which nothing returns, in words."""
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    if not artificial:
+        return f"reference: {what}, none of whose sides is artificial"
+    staying = [side for side in artificial if side not in moving]
+    until = f"nothing returns before {case.run.duration:g} s"
+    if not staying:
+        return f"reference: {what}, from which {until}"
+    stay, reflect = ("stay", "reflect") if len(staying) > 1 else ("stays", "reflects")
+    stays = f"{what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter there"
+    absorbers = dict.fromkeys(case.side(side).absorber for side in staying)
+    if all(absorbers):
+        return f"reference: {stays}, before {' and '.join(absorbers)}, which returns next to nothing"
+    return f"reference: {stays}, and {reflect} as in the case"
+
+
+def same_step(run: R, step: float) -> R:
+    """The ``[run]`` table with the time step (s) of the case."""
+    if run.time_step != "auto" or run.safety > LESS or getattr(run, "courant", None) is not None:
+        return run
+    return run.model_copy(update={"time_step": step})
+
 
 C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
@@ -122,3 +195,32 @@ def no_seed(case: Case) -> CaseError:
     """The error for a request of other seeds for a case without a random packing."""
     reason = "the case has no random packing, so that nothing depends on a seed"
     return CaseError([f"--seeds: {reason}"], case.name)
+
+
+@cache
+def _made(place: str) -> Judge[Any, Any]:
+    """The judge at a place such as "package.module:Class"."""
+    return resolve_name(place)()
+
+
+def judge_of(case: Case) -> Judge[Any, Any]:
+    """The judge of the kind of body that a case describes; only the one that is needed is imported."""
+    return _made(body_of(case).judge)
+
+
+MOST = 8_000_000
+"""Particles of the largest scene that is made unless another limit is given; its run takes some 2 GB."""
+
+
+def extended(case: Case, most: int = MOST) -> Extended:
+    """The scene of a case enlarged so that nothing returns from artificial sides to its monitors within run.duration.
+
+    Without monitors nothing returns to any place of the scene. The time step remains that of the case. Bars are
+    extended beyond ends that are neither loaded nor driven.
+
+    most : largest number of particles or nodes.
+
+    Raises CaseError where no artificial side can move, where a hole reaches beyond a side that has to, and where more
+    than `most` particles are needed; also the errors of building the scene.
+    """
+    return judge_of(case).extended(case, most)

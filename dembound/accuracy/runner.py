@@ -17,10 +17,9 @@ from dembound.accuracy.choice import AnyCase, digest
 from dembound.casefile import Case
 from dembound.casefile.tables import ENDING
 from dembound.formulas.history import History, Motions
-from dembound.motion.clock import Clock
 from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Records
+from dembound.motion.trackers import Clock, Records
 from dembound.running import Progress, Reports, plan, simulation_of
 from dembound.table import Box
 
@@ -80,19 +79,12 @@ class Kept(Protocol):
         """Keep the run of a case."""
 
 
-class InMemory:
+class InMemory(dict[str, Run]):
     """Runs that are kept as long as this object."""
-
-    def __init__(self) -> None:
-        self._runs: dict[str, Run] = {}
-
-    def get(self, key: str) -> Run | None:
-        """The run of the case with this digest; None if there is none."""
-        return self._runs.get(key)
 
     def add(self, key: str, run: Run) -> None:
         """Keep the run of a case."""
-        self._runs[key] = run
+        self[key] = run
 
 
 Shown = Callable[[str], AbstractContextManager[Progress]]
@@ -114,7 +106,8 @@ class Runner:
 
     def __init__(self, kept: Kept | None = None, shown: Shown = unseen) -> None:
         self.work = self.count = 0
-        self._kept, self._shown = kept or InMemory(), shown
+        self._shown = shown
+        self._kept: Kept = InMemory() if kept is None else kept
 
     def run(self, case: Case, name: str = "", inside: Box | None = None) -> Run:
         """The run of a case, without costs unless they are kept; name, inside : see `Shown` and `measure`.

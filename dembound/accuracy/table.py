@@ -66,7 +66,8 @@ def next_step(budget: Budget, results: Path, case: Path | None) -> str:
 
 def _table(budget: Budget) -> list[str]:
     """The table; causes that are small at all monitors have no column where there is no space for all."""
-    ordered = sorted(budget.motions, key=lambda name: -_key(budget.largest(name)[1]))
+    worst = {name: budget.largest(name)[1] for name in budget.motions}
+    ordered = sorted(worst, key=lambda name: -worst[name].upper if worst[name].is_known else 1.0)
     names = [name for name in budget.motions if name in ordered[:MOST_MONITORS]]
     known = [cause for cause in budget.causes.found if cause.how != "unknown"]
     large = [cause for cause in known if any(_share(budget, cause, name) >= LEAST for name in names)]
@@ -74,7 +75,7 @@ def _table(budget: Budget) -> list[str]:
     if max(map(len, lines)) > WIDTH and len(large) < len(known):
         small = ", ".join(cause.name for cause in known if cause not in large)
         lines = [*_lines(budget, names, large), *_wrapped([f"{in_words(0.0)} at all monitors: {small}"])]
-    left = [budget.largest(name)[1] for name in ordered[MOST_MONITORS:]]
+    left = [worst[name] for name in ordered[MOST_MONITORS:]]
     return [*lines, *([f"and {counted(len(left), 'more monitor')}, {_at_most(left)}"] if left else [])]
 
 
@@ -96,10 +97,6 @@ def _lines(budget: Budget, names: Sequence[str], causes: Sequence[Cause]) -> lis
     deepest = max(map(len, wrapped))
     above = zip(*([""] * (deepest - len(lines)) + lines for lines in wrapped), strict=True)
     return columns([*above, *zip(*cells, strict=True)])
-
-
-def _key(share: Share) -> float:
-    return share.upper if share.is_known else -1.0
 
 
 def _share(budget: Budget, cause: Cause, name: str) -> float:

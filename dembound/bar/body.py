@@ -1,4 +1,6 @@
-"""The arrays of a bar."""
+"""The arrays of a bar, the stability limit of its bonds, and what a run needs: RAM and bytes on disk."""
+
+from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,15 +9,133 @@ from typing import Any
 
 import numpy as np
 
-from dembound.bar.banded import is_stable, largest_stable_step
 from dembound.bar.layers import EndLayer, continued
-from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
-from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.model import BarCase
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
+from dembound.motion.memory import Storage, for_paraview, largest, must_fit, recorded, total
 from dembound.motion.scene import FASTEST, Scene
+
+ROUNDING = 1e-9
+"""Share by which a step may exceed its limit, as rounding may shift the limit to either side of a round number."""
+
+BISECTIONS = 60
+"""Number of bisections of the bracket of the largest eigenvalue: more than the bits of a float."""
+
+
+def largest_stable_step(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> float:
+    """Largest stable step 2/ω_max of central differences, s; infinite where nothing vibrates.
+
+    bands (b, n) N/m: the stiffness matrix, row d contains the entries K[i + d, i]; mass (n,) kg; held (h,) nodes that
+    cannot move. ω_max² is the largest eigenvalue of M⁻¹K, the least λ for which λM − K has a Cholesky factor; it is
+    found to the last bits by bisection.
+    """
+    scaled = _by_mass(bands, mass, held)
+    low, high = 0.0, _row_sums(scaled)
+    if high == 0.0:
+        return np.inf
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        low, high = (low, middle) if _is_above(scaled, middle) else (middle, high)
+    return float(2.0 / np.sqrt(high))
+
+
+def is_stable(step: float, bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> bool:
+    """Whether central differences are stable with a time step (s).
+
+    Bands, mass and held nodes as in `largest_stable_step`.
+    """
+    return _is_above(_by_mass(bands, mass, held), 4.0 / step**2)
+
+
+def _by_mass(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Bands of M^(-1/2) K M^(-1/2) (1/s²), without the nodes that are held."""
+    root = 1.0 / np.sqrt(mass)
+    root[held] = 0.0
+    scaled = bands * root
+    for d, band in enumerate(scaled):
+        band[: len(root) - d] *= root[d:]
+        band[len(root) - d :] = 0.0
+    return scaled
+
+
+def _row_sums(bands: np.ndarray) -> float:
+    """Largest sum of |entries| in a row of a symmetric banded matrix: no eigenvalue is larger (Gershgorin)."""
+    sums = np.abs(bands[0])
+    for d, band in enumerate(np.abs(bands[1:]), start=1):
+        sums = sums + band
+        sums[d:] += band[:-d]
+    return float(sums.max())
+
+
+def _is_above(bands: np.ndarray, value: float) -> bool:
+    """Whether a value lies above all eigenvalues of a symmetric banded matrix."""
+    from scipy.linalg import LinAlgError, cholesky_banded
+
+    shifted = -bands
+    shifted[0] += value
+    try:
+        cholesky_banded(shifted, lower=True, overwrite_ab=True, check_finite=False)
+    except LinAlgError:
+        return False
+    return True
+
+
+BLOCK, WIDTH = 2048, 7
+"""Steps of a block of the record, and numbers of a node in it."""
+
+
+def must_fit_here(case: BarCase) -> None:
+    """Raise CaseError if a run of a case needs more RAM than is free on this machine, without building it."""
+    lengths = case.method.largest_horizon
+    horizon = f" with a horizon of {lengths:,} spacings" if lengths > 1 else ""
+    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.nodes:,} nodes{horizon}")
+
+
+def counts_of(case: BarCase) -> dict[str, float]:
+    """Numbers of nodes, bonds and records of a run, see `motion.memory.BYTES`."""
+    nodes, lengths = float(case.bar.nodes), max(case.method.largest_horizon, 1)
+    beyond = case.method.horizon_beyond
+    layers = [table.layer.nodes for table in case.boundary.values() if table.layer]
+    return {
+        "node": nodes,
+        "slot": nodes,
+        "bond": lengths * nodes,
+        "link": (lengths + 1) * nodes,
+        "layer_link": sum((beyond + 1.0) * (count + beyond) for count in layers),
+        **recorded(len(case.monitor), BLOCK, WIDTH, sum(load.nodes for load in case.load) + 2.0),
+    }
+
+
+def run_bytes(case: BarCase) -> float:
+    """Largest RAM (bytes) of a run, with the temporary arrays of its largest moment."""
+    counts, snapshots = counts_of(case), case.output.snapshots > 0
+    stages = {
+        "step": total(counts, "bar", "bonds", "bands"),
+        "run": total(
+            counts,
+            *("bar", "bonds", "bar_motion", "ledger", "record", "bar_layer"),
+            opening=case.bar.opens,
+            damage=snapshots,
+        ),
+        "export": total(counts, bar_export=snapshots),
+    }
+    return largest(stages, case)
+
+
+def storage_of(case: BarCase) -> Storage:
+    """Bytes on disk of the results of a bar."""
+    counts, files = counts_of(case), case.output.paraview
+    vtu = total(counts, "bar_vtu", bar_vtu_peaks=case.output.peaks)
+    return Storage(
+        total(counts, "bar_header") + for_paraview(files, 0.0, total(counts, "bar_vtkhdf_header")),
+        total(counts, "bar_snapshot") + for_paraview(files, vtu, total(counts, "bar_vtkhdf")),
+        total(counts, "bar_state", "bonds"),
+    )
 
 
 @dataclass(frozen=True)

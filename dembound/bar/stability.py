@@ -1,14 +1,25 @@
-"""The time step of a bar and its limit, the time of a step, and bars at rest in which noise is stepped."""
+"""The steps of a bar: their length, limit and cost, the infinite row of its nodes, and the front of its waves.
+
+Bars at rest, in which noise is stepped, show whether a step is stable.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Iterator
+from itertools import product
+
 import numpy as np
 
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
 from dembound.errors import CaseError
+from dembound.exact.bar import Lattice, usual_shares
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Range
 from dembound.motion.part import System
+from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial, at_rest, left_out
 
 STEP, BOND, LAYER_BOND = 250.0, 0.45, 6.0
@@ -141,3 +152,76 @@ def trials_of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
         found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True, step_cost=cost))
     stays = ["the method stays at each stage"] if len(stages) > 1 else []
     return found, [f"{scene.count:,} nodes, the whole bar", *left_out(case), *stays]
+
+
+DIGITS = 12
+"""Digits of the share of stress that bonds of one length carry; further digits are rounding errors."""
+
+
+def lattice_of(bonds: Bonds, part: Range, time_step: float) -> Lattice:
+    """The infinite row of nodes with the bonds of the middle of a range; time_step s."""
+    shares = tuple(round(share, DIGITS) for share in bonds.shares(part))
+    horizon = len(shares)
+    usual = shares == tuple(round(share, DIGITS) for share in usual_shares(horizon))
+    return Lattice(horizon, part.spacing, time_step, part.speed, None if usual else shares)
+
+
+def even_lattices(stages: Iterable[Bonds], ranges: Iterable[Range], time_step: float) -> Iterator[Lattice]:
+    """The infinite rows of all stages of a method in all ranges; time_step s.
+
+    Stages in which a zone of other bonds ends in the middle of a range are left out, as the row is not uniform there.
+    """
+    for bonds, part in product(stages, ranges):
+        if math.isclose(sum(bonds.shares(part)), 1.0, rel_tol=10.0**-DIGITS):
+            yield lattice_of(bonds, part, time_step)
+
+
+def carrying_lattices(scene: BarScene, time_step: float) -> list[Lattice]:
+    """For every range the infinite row of nodes in which waves run before the method reacts; time_step s."""
+    bonds = scene.case.method.begin(scene.rod)
+    return [lattice_of(bonds, part, time_step) for part in scene.rod.ranges]
+
+
+def sources_of_bar(case: BarCase) -> list[Source]:
+    """Driven and loaded ends and moving ranges; a load spread over several nodes starts at the innermost one.
+
+    A range that moves at the start sends waves from when it meets the next one until its own wave has returned once.
+    """
+    bar = case.bar
+    speed = min(part.speed for part in bar.parts)
+    places = {"left": 0.0, "right": bar.length}
+    sources = [
+        Source((places[side], 0.0, places[side], 0.0), case.wave[name].start, case.wave[name].duration(), speed)
+        for side, waves in case.driving.items()
+        for name in waves.values()
+    ]
+    for load in case.load:
+        wave, end = case.wave[load.wave], bar.end(load.side)
+        wide = (load.nodes - 1) * end.length / end.cells
+        low, high = (0.0, wide) if load.side == "left" else (bar.length - wide, bar.length)
+        sources.append(Source((low, 0.0, high, 0.0), wave.start, wave.duration(), speed))
+    gaps = sum(given.gap for given in bar.range)
+    for given, part, start in zip(bar.range, bar.parts, bar.starts, strict=False):
+        if given.velocity != 0.0:
+            over = gaps / abs(given.velocity) + 2.0 * part.length / part.speed
+            sources.append(Source((start, 0.0, start + part.length, 0.0), 0.0, over, speed))
+    return sources
+
+
+SAMPLES = 400
+"""Wave numbers at which group speeds are computed, per spacing of the horizon."""
+
+
+def front_of_bar(scene: BarScene, time_step: float) -> Front:
+    """The fastest waves of a bar that is stepped by time_step (s), at any stage of its method.
+
+    With bonds up to m spacings Δx long, phase speeds are c(1 − (kΔx)²((m² + 1)/2 − ν²)/24): a row of nodes bonded to
+    neighbours only that has the same dispersion has at most the spacing Δx√((m² + 1)/2).
+    """
+    ranges = scene.rod.ranges
+    speed = max(part.speed for part in ranges)
+    for row in even_lattices(scene.case.method.stages(scene.rod), ranges, time_step):
+        groups = row.group_velocity(row.shortest * np.linspace(0.0, 1.0, SAMPLES * row.horizon, endpoint=False))
+        speed = max(speed, float(np.nanmax(groups)))
+    horizon = scene.case.method.largest_horizon
+    return Front(speed, max(part.spacing for part in ranges) * float(np.sqrt(0.5 * (horizon**2 + 1))))

@@ -1,6 +1,6 @@
 """The case: the tables of a file, checks between them, and the list of tables of each kind of body."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -166,6 +166,9 @@ def _plain(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
+Tables = Mapping[str, Any]
+"""The tables of a case by name; one that is invalid is None."""
+
 MOST_MONITORS = 1000
 """Largest number of monitors: their records are checked for damage within seconds, see `results.structure`."""
 
@@ -185,53 +188,44 @@ def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, s
             yield f"boundary.{side}.wave_{motion}", name
 
 
-def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
-    """Holes, loads or monitors whose results would overwrite one another."""
-    first: dict[str, int] = {}
-    for number, table in enumerate(tables, start=1):
-        if table and first.setdefault(table.name, number) != number:
-            yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
+def monitor_problems(tables: Tables) -> Iterator[str]:
+    """Holes, loads or monitors whose results would overwrite one another, and too many monitors."""
+    for key in ("hole", "load", "monitor"):
+        first: dict[str, int] = {}
+        for number, table in enumerate(tables.get(key, ()), start=1):
+            if table and first.setdefault(table.name, number) != number:
+                yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
+    if (count := len(tables["monitor"])) > MOST_MONITORS:
+        yield f"monitor: there are {count:,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
 
 
-def too_many(monitors: Sequence[Any]) -> Iterator[str]:
-    """Too many monitors."""
-    if len(monitors) > MOST_MONITORS:
-        yield f"monitor: there are {len(monitors):,}, must be {MOST_MONITORS:,} or less; snapshots have all places"
-
-
-def never_past_peak(run: Run, sides: Mapping[str, Boundary | None]) -> Iterator[str]:
-    """A run that ends after the peak of the forces on driven sides, without such a side, or shorter than the fall."""
-    if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
-        yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
-    if run.peak_for is not None and run.peak_for > run.duration:
-        yield f"run.peak_for: is {run.peak_for:g}, must be at most run.duration, {run.duration:g} (s)"
-
-
-def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
-    """A run that ends with its monitors at rest, but has no monitors or is shorter than the time at rest."""
-    if run.until == "silent" and not monitors:
-        yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
-    if run.silent_for is not None and run.silent_for > run.duration:
-        yield f"run.silent_for: is {run.silent_for:g}, must be at most run.duration, {run.duration:g} (s)"
-
-
-def never_estimated(output: Output, monitors: Sequence[Any]) -> Iterator[str]:
+def never_estimated(tables: Tables) -> Iterator[str]:
     """A request for errors at monitors in a case without monitors."""
-    if output.estimate and not monitors:
+    if tables["output"].estimate and not tables["monitor"]:
         yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
 
 
-def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
-    """Time step and intervals that are longer than the run."""
+def run_problems(tables: Tables) -> Iterator[str]:
+    """Time step and intervals that are longer than the run, and ends before its duration that cannot come.
+
+    A run may end once its monitors are at rest, or after the peak of the forces on driven sides.
+    """
+    run, output, sides = tables["run"], tables["output"], tables["boundary"]
+    most = f"must be at most run.duration, {run.duration:g} (s)"
     if run.time_step != "auto" and run.time_step > run.duration:
-        yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
+        yield f"run.time_step: is {run.time_step:g}, {most}"
     for key in ("history_interval", "side_interval", "energy_interval"):
         if output and (interval := getattr(output, key)) > run.duration:
-            yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"
+            yield f"output.{key}: is {interval:g}, {most}"
+    if run.until == "silent" and not tables["monitor"]:
+        yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
+    if run.silent_for is not None and run.silent_for > run.duration:
+        yield f"run.silent_for: is {run.silent_for:g}, {most}"
+    if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
+        yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
+    if run.peak_for is not None and run.peak_for > run.duration:
+        yield f"run.peak_for: is {run.peak_for:g}, {most}"
 
-
-Tables = Mapping[str, Any]
-"""The tables of a case by name; one that is invalid is None."""
 
 WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
 

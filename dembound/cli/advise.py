@@ -98,7 +98,7 @@ def advise_cases(
 
     Only small scenes with larger disks are run; see docs/tasks/trust_a_result.md.
     """
-    from dembound.accuracy.advise import BOUNDS, advise
+    from dembound.accuracy.estimate import BOUNDS, advise
     from dembound.cli.progress import Table, watched
 
     bound = bound_of(error)
@@ -155,7 +155,7 @@ def chosen(
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `advise`.
     """
-    from dembound.accuracy.advise import advise
+    from dembound.accuracy.estimate import advise
     from dembound.cli.progress import watched
 
     with watched(case.name) as watching:

@@ -130,7 +130,7 @@ def _print(charted: Charted) -> None:
 
 def _cells(charted: Charted, number: int, line: Line, has_rest: bool) -> list[str]:
     """Numbers of a choice as text, with its total error if references have one; rounding errors are 0."""
-    from dembound.accuracy.chart.front import NONE
+    from dembound.accuracy.chart.study import NONE
 
     if line.outcome.failure:
         return ["failed"]

@@ -33,7 +33,7 @@ from dembound.errors import CaseError, RunError
 if TYPE_CHECKING:
     from dembound.boundaries.edge import Edge
     from dembound.disks.scene import DiskScene
-    from dembound.exact.dispersion import Lattice, Speed
+    from dembound.exact.bar import Lattice, Speed
     from dembound.plot.reflection import Points
     from dembound.plot.stability import Line
     from dembound.studies.stability import Stability
@@ -153,7 +153,7 @@ def _overview(shown: Sequence[Lattice]) -> Table:
 
 def _needed(lattice: Lattice, of: Speed) -> str:
     """Spacings per wavelength for 1 %, in words."""
-    from dembound.exact.dispersion import cells_per_wavelength
+    from dembound.exact.bar import cells_per_wavelength
 
     if not lattice.stable:
         return "unstable"

@@ -13,9 +13,8 @@ from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemai
 from rich.progress import Progress as RichProgress
 from rich.text import Text
 
-from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.proposal import Proposal, Watch
 from dembound.accuracy.table import WIDTH, in_one_line, lines_of
-from dembound.accuracy.watch import Watch
 from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, ending_with, err, print_lines
 from dembound.formulas.cause import Cause

@@ -66,7 +66,7 @@ def cache(
 
     The environment variable DEMBOUND_CACHE sets another folder.
     """
-    from dembound.packings.cache import cache_folder, clear
+    from dembound.packings.brick import cache_folder, clear
 
     out.print(str(cache_folder()))
     if delete:

@@ -20,10 +20,9 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.disks.surroundings.recorded import RecordedContinuum
-from dembound.motion.recorded_nodes import Between
-from dembound.motion.scene import Scene
+from dembound.motion.memory import thread_count_for
+from dembound.motion.scene import Between, Scene
 from dembound.motion.state import Layout
-from dembound.motion.threads import thread_count_for
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly

@@ -25,7 +25,7 @@ from dembound.disks.material.packing_waves import INDEX
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
-from dembound.motion.recorded_nodes import Between
+from dembound.motion.scene import Between
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly, disks_around

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.casefile.disks.law import with_history
+from dembound.casefile.disks.targets import with_history
 from dembound.disks.contacts.pairs import PIECE, acting
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.system import DiskSystem

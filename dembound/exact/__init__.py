@@ -1,12 +1,10 @@
-"""Exact solutions with which results are compared, one problem per file.
+"""Exact solutions with which results are compared.
 
 They import nothing about disks, cases or runs. Arguments are numbers and arrays, results are arrays.
 """
 
-from dembound.exact.bar import bar_stress, bar_velocity, triangle_spall
-from dembound.exact.cavity import CavityMotion, cavity_moment, cavity_motion
-from dembound.exact.dispersion import Lattice, cells_per_wavelength, courant_limit
-from dembound.exact.garvin import buried_explosion
+from dembound.exact.bar import Lattice, bar_stress, bar_velocity, cells_per_wavelength, courant_limit, triangle_spall
+from dembound.exact.explosion import CavityMotion, buried_explosion, cavity_moment, cavity_motion
 from dembound.exact.lamb import rayleigh_speed, surface_displacement
 from dembound.exact.lamb_below import buried_displacement
 from dembound.exact.scattering import PlaneWave, ScatteredMotion, scattered_motion

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.exact.histories import DECAY, PADDED, Histories
+from dembound.exact.transform import DECAY, PADDED, Histories
 
 Damping = Literal["elastic", "hysteretic", "constant_q"]
 """How the quality of layers enters their moduli."""

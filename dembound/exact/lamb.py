@@ -142,11 +142,7 @@ def _kernel(p_wave_speed: float, s_wave_speed: float) -> _Kernel:
 
 
 def _converged(
-    kernel: _Kernel,
-    load_from: LoadFrom,
-    latest: np.ndarray,
-    at_pole: np.ndarray,
-    tolerance: float,
+    kernel: _Kernel, load_from: LoadFrom, latest: np.ndarray, at_pole: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """∫ load · kernel dp (2, k) up to the slownesses `latest` (k,), quadrature refined to the tolerance.
 
@@ -158,25 +154,32 @@ def _converged(
     logarithm = np.log(beyond / (kernel.pole - math.sqrt(kernel.ratio)))
     rayleigh = np.stack([kernel.horizontal_impulse() * at_pole, residue * logarithm])
 
-    panels = FEWEST_PANELS
-    finer = rayleigh + _integral(kernel, load_from, latest, residue, panels)
-    change = math.inf
+    def integral(panels: int) -> np.ndarray:
+        return rayleigh + _integral(kernel, load_from, latest, residue, panels)
+
+    return refined(integral, (FEWEST_PANELS, MOST_PANELS), tolerance, "Lamb's integral", "load")
+
+
+def refined(
+    integral: Callable[[int], np.ndarray], panels: tuple[int, int], tolerance: float, name: str, of: str
+) -> np.ndarray:
+    """An integral with so many panels that the last halving of them has changed it by less than the tolerance.
+
+    integral : it, with a number of panels. panels : the least and the largest number. tolerance : over its largest
+    value. name, of : the integral and its history, in words. Raises RuntimeError if the tolerance is not reached.
+    """
+    number, most = panels
+    change, finer = math.inf, integral(number)
     while change > tolerance * np.abs(finer).max(initial=0.0):
-        if panels == MOST_PANELS:
-            raise RuntimeError(f"Lamb's integral did not converge to {tolerance:g}: is the load continuous?")
-        panels *= 2
-        coarser, finer = finer, rayleigh + _integral(kernel, load_from, latest, residue, panels)
+        if number == most:
+            raise RuntimeError(f"{name} did not converge to {tolerance:g}: is the {of} continuous?")
+        number *= 2
+        coarser, finer = finer, integral(number)
         change = np.abs(finer - coarser).max(initial=0.0)
     return finer
 
 
-def _integral(
-    kernel: _Kernel,
-    load_from: LoadFrom,
-    latest: np.ndarray,
-    residue: np.ndarray,
-    panels: int,
-) -> np.ndarray:
+def _integral(kernel: _Kernel, load_from: LoadFrom, latest: np.ndarray, residue: np.ndarray, panels: int) -> np.ndarray:
     """The regular part of the integral (2, k), with a number of Gauss panels on each of its pieces.
 
     The pieces end at P, S and Rayleigh arrival. p = low + width·sin²(πv/2), 0 < v < 1, removes the square roots at

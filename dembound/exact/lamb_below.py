@@ -9,7 +9,7 @@ In the notation of `exact/lamb.py` the load F(t) moves the place at x, z by a su
     S      η_b z     −2pη_aη_b/R       2p²η_a/R
 
 On the surface both have τ = px, and their sum is the solution there. With L = √(x² + z²) both paths are hyperbolas as
-in `exact/garvin.py`, from τ = aL and bL on. Where x/L > a/b, S begins with the head wave: p real from a to bx/L.
+in `exact/explosion.py`, from τ = aL and bL on. Where x/L > a/b, S begins with the head wave: p real from a to bx/L.
 
 Rayleigh's pole lies z√(p_R² − b²) beside the real time p_R x, towards which intervals of integration become shorter.
 """
@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from dembound.exact.lamb import rayleigh_speed
+from dembound.exact.lamb import rayleigh_speed, refined
 from dembound.exact.solid import Solid
 from dembound.exact.transform import Signal
 
@@ -52,15 +52,9 @@ def buried_displacement(
         raise ValueError(f"distance ({distance} m) and depth ({depth} m) must be positive")
     times = np.asarray(times, dtype=float)
     rays = _Rays(distance, depth, 1.0 / solid.p_wave_speed, 1.0 / solid.s_wave_speed)
-    panels, change = FEWEST_PANELS, math.inf
-    finer = _sum(rays, times, load, panels)
-    while change > tolerance * np.abs(finer).max(initial=0.0):
-        if panels == MOST_PANELS:
-            raise RuntimeError(f"Lamb's integral did not converge to {tolerance:g}: is the load continuous?")
-        panels *= 2
-        coarser, finer = finer, _sum(rays, times, load, panels)
-        change = np.abs(finer - coarser).max(initial=0.0)
-    return finer / (math.pi * solid.density * solid.s_wave_speed**2)
+    panels = FEWEST_PANELS, MOST_PANELS
+    found = refined(lambda number: _sum(rays, times, load, number), panels, tolerance, "Lamb's integral", "load")
+    return found / (math.pi * solid.density * solid.s_wave_speed**2)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.exact.histories import Histories
+from dembound.exact.transform import Histories
 
 FINER = 4
 """Fine samples in a sample of the incident wave."""

@@ -127,7 +127,7 @@ class Bonds:
         """Shares of the stress under uniform strain that bonds of one, two … spacings carry in the middle of a range.
 
         Local springs have one spacing. There are as many shares as the longest bonds there have spacings; see
-        `exact.dispersion.Lattice`.
+        `exact.bar.Lattice`.
         """
         middle = part.first + (part.cells + 1) // 2
         stiffness = np.zeros(max(self.horizon, 1))

@@ -1,14 +1,17 @@
-"""RAM and bytes on disk of a run: numbers of things, times the bytes that each takes.
+"""What a run needs of the machine: RAM and bytes on disk, by numbers of things, and threads.
 
 `BYTES` has the arrays and files of a run of any kind of body, with the bytes per disk, node, contact and so on, counted
 from the shapes of arrays. The kinds count the things, and say which arrays there are at the largest moment of each
-stage (`disks/memory.py`, `bar/memory.py`).
+stage (`disks/memory.py`, `bar/body.py`).
 """
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import NamedTuple
+
+import numba
 
 from dembound.casefile.model import Case
 from dembound.casefile.tables import ParaView
@@ -198,3 +201,28 @@ def in_words(size: float) -> str:
     if size < 999.5e6:
         return f"{size / 1e6:.0f} MB"
     return f"{size / 1e9:.3g} GB" if size < 999.5e9 else f"{size / 1e12:.3g} TB"
+
+
+PARTICLES_PER_THREAD = 40_000
+"""Number of particles below which a step takes less than 0.2 ms, much of which would be the synchronisation of
+threads.
+"""
+
+
+def thread_count_for(particles: int) -> int:
+    """Number of threads for a scene with this number of particles, at most as many as are allowed."""
+    return min(numba.get_num_threads(), max(1, particles // PARTICLES_PER_THREAD))
+
+
+@contextmanager
+def threads_for(particles: int) -> Iterator[None]:
+    """Limit the threads of compiled loops inside to the number for a scene with this number of particles.
+
+    Results do not depend on it.
+    """
+    allowed = numba.get_num_threads()
+    numba.set_num_threads(thread_count_for(particles))
+    try:
+        yield
+    finally:
+        numba.set_num_threads(allowed)

@@ -9,15 +9,13 @@ from dembound.errors import RunError
 from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
 from dembound.kernels.calls import Kept
-from dembound.motion.clock import Clock
-from dembound.motion.memory import DRIVEN_BYTES
+from dembound.motion.memory import DRIVEN_BYTES, threads_for
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.sides import NodeSides, Samples
 from dembound.motion.state import State, aligned_zeros
 from dembound.motion.supports import NodeSupports
-from dembound.motion.threads import threads_for
-from dembound.motion.trackers import Records, Tracker, Watch
+from dembound.motion.trackers import Clock, Records, Tracker, Watch
 
 AT_ONCE = 20_000_000
 """Nodes times steps between two checks for a request to end: 0.2 s to 2 s on one core."""

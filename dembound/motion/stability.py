@@ -12,10 +12,10 @@ from dembound.casefile.model import Case
 from dembound.errors import RunError
 from dembound.interrupts import look
 from dembound.kernels.lanczos import next_vector, work
+from dembound.motion.memory import threads_for
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.state import Layout, aligned_zeros
-from dembound.motion.threads import threads_for
 
 TOLERANCE = 1e-3
 """Relative residual at which the iteration for the eigenvalue ends.

@@ -233,22 +233,15 @@ class DensePacking(Packing):
         low, high = PRESSURES
         pressure = PRESSURE if self.confining_stress is None else self.confining_stress / contact_modulus
         if not low <= pressure <= high:
-            raise CaseError(
-                [
-                    f"packing.confining_stress: {with_unit(pressure * contact_modulus, 'Pa')} is {pressure:.2g} of the "
-                    f"contact modulus {with_unit(contact_modulus, 'Pa')}; {low:g} to {high:g} of it "
-                    f"({with_unit(low * contact_modulus, 'Pa')} to {with_unit(high * contact_modulus, 'Pa')}) "
-                    "can be packed"
-                ]
+            given, least, most, modulus = (
+                with_unit(share * contact_modulus, "Pa") for share in (pressure, low, high, 1.0)
             )
+            what = f"packing.confining_stress: {given} is {pressure:.2g} of the contact modulus {modulus}"
+            raise CaseError([f"{what}; {low:g} to {high:g} of it ({least} to {most}) can be packed"])
         if pressure < LOOSEST_EQUAL and self.radius_ratio < LEAST_RATIO:
-            raise CaseError(
-                [
-                    f"packing.radius_ratio: is {self.radius_ratio:g}, must be at least {LEAST_RATIO:g} for a confining "
-                    f"stress below {LOOSEST_EQUAL:g} of the contact modulus: nearly equal disks form crystals, which "
-                    "fall apart"
-                ]
-            )
+            must = f"must be at least {LEAST_RATIO:g} for a confining stress below {LOOSEST_EQUAL:g}"
+            reason = "of the contact modulus: nearly equal disks form crystals, which fall apart"
+            raise CaseError([f"packing.radius_ratio: is {self.radius_ratio:g}, {must} {reason}"])
         return Recipe(
             size=self.brick,
             radius=self.radius,

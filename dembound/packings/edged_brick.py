@@ -6,8 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from dembound.packings.base import DensePacking
-from dembound.packings.brick import Brick
-from dembound.packings.cache import load_or_pack
+from dembound.packings.brick import Brick, load_or_pack
 from dembound.packings.dense import RegularRows, pack_dense
 from dembound.table import quantity
 

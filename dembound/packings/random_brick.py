@@ -4,8 +4,7 @@ from dataclasses import asdict
 from typing import Literal
 
 from dembound.packings.base import DensePacking
-from dembound.packings.brick import Brick
-from dembound.packings.cache import load_or_pack
+from dembound.packings.brick import Brick, load_or_pack
 from dembound.packings.dense import pack_dense
 
 

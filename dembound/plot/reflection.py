@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, NullLocator, ScalarFormatter
 
-from dembound.exact.dispersion import Lattice
+from dembound.exact.bar import Lattice
 from dembound.plot.style import COLOURS, DASHES, REFERENCE, finished, line_style, new_figure, point_style, styled
 
 LEAST = 1e-6

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.casefile.disks.outside import CONTINUUM
+from dembound.casefile.disks.layer import CONTINUUM
 from dembound.errors import CaseError, RecordError
 from dembound.files import content_of
 from dembound.motion.kind import Plan

@@ -14,10 +14,9 @@ from dembound.casefile.model import Case
 from dembound.errors import CaseError, RecordError, RunError
 from dembound.interrupts import Interrupts, put_off
 from dembound.kinds import kind_of
-from dembound.motion.clock import Clock
 from dembound.motion.kind import Beginning, Kind, Plan, StalledError
 from dembound.motion.simulation import Simulation
-from dembound.motion.trackers import Run, Tracker
+from dembound.motion.trackers import Clock, Run, Tracker
 from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import FOLDER as STAGES
 from dembound.results.checkpoint import Checkpoints, KeptStages, facts_of

@@ -14,7 +14,6 @@ from dembound.casefile.unlikely import unlikely
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import kind_of
 from dembound.machine import disk_free
-from dembound.motion.clock import Clock
 from dembound.motion.endings import Peak, Silence, monitored, peak_rule, silent_rule
 from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Beginning, Kind, Plan
@@ -22,6 +21,7 @@ from dembound.motion.memory import in_words, total
 from dembound.motion.paths import first_arrivals
 from dembound.motion.scene import Scene
 from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Clock
 from dembound.results.checkpoint import FOLDER as STAGES
 from dembound.results.checkpoint import settled_state
 from dembound.schemas import checked

@@ -8,16 +8,15 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from dembound.bar.linear_steps import even_lattices
 from dembound.bar.scene import build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import choose_step, even_lattices
 from dembound.casefile import Case
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.casefile.bar.bar import LARGEST, SMALLEST
 from dembound.casefile.model import as_kind
 from dembound.casefile.reader import loads
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, usual_shares
+from dembound.exact.bar import Lattice, usual_shares
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST

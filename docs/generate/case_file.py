@@ -13,14 +13,12 @@ from dembound import boundaries, holes, methods, packings, waves
 from dembound.boundaries import Boundary
 from dembound.casefile.bar.bar import Bar, BarRange
 from dembound.casefile.bar.model import BarLoad, BarMonitor, BarRun
-from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground
-from dembound.casefile.disks.incident import IncidentWave, Motion
-from dembound.casefile.disks.layer import Layer
+from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
+from dembound.casefile.disks.layer import Layer, OutsideTable
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskRun, Reduce
-from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static
 from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.tables import Chart, ChartChoice, Output, Sweep

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.accuracy.advise import advise
-from dembound.accuracy.judges import extended
+from dembound.accuracy.estimate import advise
+from dembound.accuracy.judge import extended
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.edit import edited

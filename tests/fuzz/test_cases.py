@@ -22,7 +22,7 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.json_schema import json_schema
 from dembound.errors import CONTROL, CaseError, DemboundError
-from dembound.formulas.first_echoes import echoes
+from dembound.motion.kind import echoes
 from dembound.running import plan, warnings_before
 from dembound.starting import names, starting_point
 

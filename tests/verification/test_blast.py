@@ -8,7 +8,7 @@ import pytest
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.exact.cavity import cavity_motion
+from dembound.exact.explosion import cavity_motion
 from dembound.exact.solid import Solid
 from dembound.kinds import load, with_changes
 from dembound.motion.simulation import Simulation

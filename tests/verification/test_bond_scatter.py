@@ -10,7 +10,7 @@ from dembound.disks.scene import build
 from dembound.disks.stepping.load_factor import LoadFactor
 from dembound.kernels.contacts import INTACT
 from dembound.kinds import with_changes
-from dembound.motion import threads
+from dembound.motion import memory
 from dembound.motion.simulation import Simulation
 
 STEPS = 250
@@ -64,7 +64,7 @@ def test_every_bond_breaks_when_its_own_strength_is_reached(lab, size):
 
 
 def test_the_same_breaks_by_any_threads_after_a_cut_and_after_an_elastic_start(lab, monkeypatch):
-    monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)
+    monkeypatch.setattr(memory, "PARTICLES_PER_THREAD", 1)
     one, two, cut, at_once = (
         run(lab, **SCATTER), run(lab, number=2, **SCATTER), run(lab, steps=0, **SCATTER),
         run(lab, **SCATTER, elastic_start=False),

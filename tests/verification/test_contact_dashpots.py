@@ -6,7 +6,7 @@ import pytest
 
 from dembound.disks.rest.stage import settle
 from dembound.disks.stability import OPENING, step_limit, viscous_share
-from dembound.motion import threads
+from dembound.motion import memory
 from dembound.motion.simulation import Simulation
 
 LOOSE = {"law": "linearpbond", "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}
@@ -110,7 +110,7 @@ def run(lab, size: tuple[float, float], steps: int, number: int = 1, **material)
 @pytest.mark.parametrize("geometry", ["updated", "reference"])
 @pytest.mark.parametrize("size", [(40.0, 4.0), (8.0, 4.0)], ids=["rows of copies", "one by one"])
 def test_same_bits_by_any_threads_and_after_a_cut_and_the_ledger_closes(lab, size, geometry, monkeypatch):
-    monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)
+    monkeypatch.setattr(memory, "PARTICLES_PER_THREAD", 1)
     one, cut = (run(lab, size, 0, geometry=geometry) for _ in range(2))
     ledger = lab.ledger(one, 50)
     one.run(STEPS)

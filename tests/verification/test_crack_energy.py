@@ -9,8 +9,7 @@ import pytest
 import tomli_w
 
 from dembound.bar.fracture import opened_planes
-from dembound.bar.part import BarPart
-from dembound.bar.scene import build_bar
+from dembound.bar.scene import BarPart, build_bar
 from dembound.kinds import loads
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

@@ -16,7 +16,7 @@ from small_cases import Tables, small
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.accuracy.runner import measure
 from dembound.formulas.cause import SIDES
 from dembound.formulas.history import History

@@ -12,7 +12,7 @@ from small_cases import small
 
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
-from dembound.motion.clock import Clock
+from dembound.motion.trackers import Clock
 from dembound.running.planning import plan, simulation_of
 
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}

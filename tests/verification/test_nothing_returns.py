@@ -9,7 +9,7 @@ part of the wave at first, grows far above that.
 import numpy as np
 import pytest
 
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.disks.scene import build

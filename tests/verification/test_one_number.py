@@ -15,11 +15,10 @@ import pytest
 from estimated_bars import scene as bar_scene
 from small_cases import Tables, small
 
-from dembound.accuracy.advise import advise
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.chart.study import Options, chart
-from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.judges import extended, judge_of
+from dembound.accuracy.estimate import advise, causes_of
+from dembound.accuracy.judge import extended, judge_of
 from dembound.accuracy.runner import measure
 from dembound.casefile import Case
 from dembound.formulas.cause import CONTINUUM, SIDES

@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from dembound.api import case
-from dembound.bar.linear_steps import LinearSteps
 from dembound.bar.scene import build_bar
 from dembound.formulas.bars import ends as echoes
-from dembound.formulas.bars.ends import Returned, returned_of_waves
-from dembound.kinds.bar.facts import bar_facts
+from dembound.formulas.bars.ends import LinearSteps, Returned, returned_of_waves
+from dembound.kinds.bar.summary import bar_facts
 from dembound.motion.simulation import Simulation
 
 CELLS, SPACING, SPEED = 120, 5e-3, 3000.0

@@ -9,7 +9,7 @@ from dembound.disks.scene import build
 from dembound.disks.stability import choose_step, step_limit
 from dembound.disks.trials import trials_of_disks
 from dembound.exact.column import Layer
-from dembound.exact.histories import DECAY
+from dembound.exact.transform import DECAY
 from dembound.kinds import loads, with_changes
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation

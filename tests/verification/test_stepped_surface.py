@@ -7,7 +7,7 @@ large that nothing returns, in which the bench and the floor in front of the slo
 import numpy as np
 import pytest
 
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build

@@ -14,7 +14,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.stepping.load_factor import LoadFactor
 from dembound.kinds import with_changes
-from dembound.kinds.disks.load_warnings import load_warnings
+from dembound.kinds.disks.side_warnings import load_warnings
 
 STRESS = [-2e6, -3e6, 0.5e6]
 WEIGHT = [{"acceleration": (0.0, -9.81)}]

@@ -19,7 +19,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
 from dembound.kinds.disks.kind import Disks
-from dembound.motion import threads
+from dembound.motion import memory
 from dembound.motion.endings import Peak, peak_rule
 
 STEPS = 150
@@ -113,7 +113,7 @@ def scene_of(lab, name: str) -> tuple[DiskScene | GridScene, float]:
 def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
     """All arrays of the state after a run with so many threads, and its energy ledger."""
     numba.set_num_threads(number)
-    assert threads.thread_count_for(1000) == number
+    assert memory.thread_count_for(1000) == number
     scene, step = scene_of(lab, name)
     start = settle(scene).start if name.startswith("settled") else None
     is_test = name.endswith("under pressure")
@@ -135,7 +135,7 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
     + ["continuum", "layered continuum"],
 )
 def test_same_bits_of_motion_contacts_and_energies(lab, name, monkeypatch):
-    monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)  # else a scene as small as this has one thread
+    monkeypatch.setattr(memory, "PARTICLES_PER_THREAD", 1)  # else a scene as small as this has one thread
     before = numba.get_num_threads()
     try:
         one, *others = [run_with(number, lab, name) for number in sorted({1, 2, numba.config.NUMBA_NUM_THREADS})]

@@ -9,7 +9,7 @@ from scene_tables import grains, lattice
 from walls import QUANTITIES, RADII, exact, key, motions, row, scene
 
 from dembound.disks.scene import build
-from dembound.formulas.disks.walls import WALL_FACTOR, wall_errors
+from dembound.formulas.disks.near_disks import WALL_FACTOR, wall_errors
 
 
 @pytest.mark.parametrize(

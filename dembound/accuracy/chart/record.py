@@ -74,7 +74,8 @@ class Record:
                     raise _damaged(group, f"{quantity} at {name}")
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
-                for name, value in _scalars(group["findings"]).items()
+                for name, value in group["findings"].items()
+                if value.shape == ()
             }
             found.cpu, found.wall = (_read_costs(group, name) for name in ("cpu", "wall"))
             return found
@@ -154,11 +155,6 @@ def _read_costs(group: h5py.Group, name: str) -> list[float]:
 def _damaged(group: h5py.Group, what: str) -> RecordError:
     """The error for a part of a run that is not as a chart writes it."""
     return RecordError([f"{group.file.filename}: is damaged: {group.name[1:]}, {what}: is not as a chart writes it"])
-
-
-def _scalars(group: h5py.Group) -> dict[str, Any]:
-    """The single numbers of a group, by name."""
-    return {name: dataset for name, dataset in group.items() if dataset.shape == ()}
 
 
 def _plain(value: Any) -> Any:

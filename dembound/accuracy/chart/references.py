@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, label
-from dembound.accuracy.judges import MOST, extended, judge_of
+from dembound.accuracy.judge import MOST, extended, judge_of
 from dembound.accuracy.reference import Exact, FinerRun, Reference
 from dembound.accuracy.runner import Run
 from dembound.boundaries import SIDES as SIDE_NAMES
@@ -19,7 +19,6 @@ from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.formulas.cause import SIDES as OF_SIDES
 from dembound.formulas.cause import Causes, Truth
-from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
 from dembound.motion.kind import Finding
 from dembound.table import Box
@@ -62,14 +61,11 @@ def exact_of(case: Case) -> Exact:
     """The exact solution of a case; raises CaseError, with the reasons, if none is known."""
     if (found := judge_of(case).exact(case)) is not None:
         return found
-    raise CaseError(
-        [
-            "--reference: there is no exact solution of this case; there are for a pulse on the free left end of a bar "
-            "without attenuation, for a plane wave that leaves through an absorbing side, and for the problems of "
-            "dembound exact"
-        ],
-        case.name,
+    known = (
+        "for a pulse on the free left end of a bar without attenuation, for a plane wave that leaves through an "
+        "absorbing side, and for the problems of dembound exact"
     )
+    raise CaseError([f"--reference: there is no exact solution of this case; there are {known}"], case.name)
 
 
 class _References:
@@ -88,9 +84,8 @@ class _References:
             return self._default()
         made = {"exact": self._exact, "extended": self._extended, "finer": self._finer, "finest": self._finest}
         if (found := made[requested]()) is None:
-            raise CaseError(
-                ["--reference: finer is for bars; of disks take exact, extended or finest"], self._case.name
-            )
+            reason = "finer is for bars; of disks take exact, extended or finest"
+            raise CaseError([f"--reference: {reason}"], self._case.name)
         return found
 
     def _default(self) -> Reference:
@@ -146,7 +141,7 @@ class _References:
         outcome = replace(outcome, findings=findings)
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
-        return self._of_run("extended", sentence, larger.case, outcome, self._places(fine))
+        return self._of_run("extended", sentence, larger.case, outcome, fine)
 
     def _sides(self) -> dict[str, Any]:
         """Changes of sides for the extended scene: a continuum where a choice lets waves in through one; else none.
@@ -170,13 +165,13 @@ class _References:
         )
         other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
         sentence += f", {label(self._case, other)}" if other else ""
-        return self._of_run("finer", sentence, fine.case, outcome, self._places(fine))
+        return self._of_run("finer", sentence, fine.case, outcome, fine)
 
     def _finest(self) -> Reference:
         """The run of the finest choice."""
         sentence = f"the finest run, {self._choices[self._own].name}"
         own = self._choices[self._own].case
-        return self._of_run("finest", sentence, own, self._outcomes[self._own], lambda run, _: run.motions)
+        return self._of_run("finest", sentence, own, self._outcomes[self._own])
 
     def _done(self, name: str, case: Case, inside: Box | None = None) -> Run:
         """The run of a case that is no choice, with breaks found inside a box; raises RunError if it fails."""
@@ -185,14 +180,11 @@ class _References:
             raise RunError(f"{name}: {outcome.failure}")
         return outcome
 
-    def _places(self, fine: FinerRun | None) -> Callable[[Run, Run], Motions]:
-        """A function that gives the histories of the reference's run at the monitors of a choice."""
-        return (lambda run, _: run.motions) if fine is None else fine.motions
+    def _of_run(self, name: str, sentence: str, case: Case, run: Run, fine: FinerRun | None = None) -> Reference:
+        """The run of a case as reference, up to its first break, after which histories do not converge.
 
-    def _of_run(
-        self, name: str, sentence: str, case: Case, run: Run, motions: Callable[[Run, Run], Motions]
-    ) -> Reference:
-        """The run of a case as reference, up to its first break, after which histories do not converge."""
+        fine : the finer run that it is, which has histories at the monitors of every choice.
+        """
         findings = {found: value for found, (value, _) in run.findings.items()}
         at = self._judge.first_break
         of = self._of or self._judge.truth(self._choices[self._own].case)
@@ -204,7 +196,7 @@ class _References:
         return Reference(
             name=name,
             sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
-            motions=lambda _, outcome: motions(run, outcome),
+            motions=lambda _, outcome: run.motions if fine is None else fine.motions(run, outcome),
             until=min(breaks, default=math.inf),
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),

@@ -10,18 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.judge import Judge
-from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
-from dembound.accuracy.of_bars.causes import causes_of_bar
-from dembound.accuracy.of_bars.exact import PulseInBar
+from dembound.accuracy.judge import Extended, Judge, movable, must_not_exceed, same_step, sentence_of
+from dembound.accuracy.of_bars.causes import PulseInBar, causes_of_bar
 from dembound.accuracy.of_bars.options import bar_choices
 from dembound.accuracy.of_bars.search import advice_for_bar
-from dembound.accuracy.proposal import Advice
+from dembound.accuracy.proposal import Advice, Watch
 from dembound.accuracy.runner import STEP_AND_END, Run
-from dembound.accuracy.watch import Watch
-from dembound.bar.linear_steps import front_of_bar, sources_of_bar
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import choose_step
+from dembound.bar.stability import choose_step, front_of_bar, sources_of_bar
 from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.model import Case
@@ -34,41 +30,6 @@ from dembound.motion.paths import plane_needed
 from dembound.places import nearest_number
 from dembound.results.histories import Quantity
 from dembound.schemas import with_changes
-
-
-def extended_bar(case: BarCase, most: int) -> Extended:
-    """A bar with more spacings beyond its ends; parameters and errors as of `accuracy.extended.extended`."""
-    scene = build_bar(case)
-    bar, step = case.bar, choose_step(scene)[0]
-    moving = movable(case, [load.side for load in case.load])
-    front = front_of_bar(scene, step)
-    spacing = {side: bar.end(side).length / bar.end(side).cells for side in ("left", "right")}
-    targets = monitored(scene) if case.monitor else scene.positions[[0, -1]]
-    cells = {"left": 0, "right": 0}
-    for side in moving:
-        plane = bar.length if side == "right" else 0.0
-        needed = plane_needed(side, sources_of_bar(case), targets, front, case.run.duration)
-        beyond = needed - plane if side == "right" else plane - needed
-        cells[side] = max(0, int(np.ceil(beyond / spacing[side] - 1e-9))) if np.isfinite(beyond) else 0
-    count = bar.nodes - 1 + sum(cells.values())
-    longer = {side: cells[side] * spacing[side] for side in cells}
-    length = bar.length + sum(longer.values()) if bar.range else count * spacing["left"]
-    must_not_exceed(count + 1, min(most, MOST_CELLS), f"{length:g} m", case)
-    sentence = sentence_of(case, f"the same bar {length:g} m long, {count + 1:,} nodes", moving)
-    if not any(cells.values()):
-        return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
-    shift = longer["left"]
-    monitors = tuple(
-        monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
-    )
-    larger = replace(
-        case,
-        bar=_lengthened(bar, longer, length),
-        monitor=monitors,
-        run=same_step(case.run, step),
-        name=f"{case.name}_extended",
-    )
-    return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))
 
 
 def _lengthened(bar: Bar, longer: Mapping[str, float], length: float) -> Bar:
@@ -168,7 +129,37 @@ class BarJudge(Judge[BarCase, BarScene]):
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""
-        return extended_bar(case, most)
+        scene = build_bar(case)
+        bar, step = case.bar, choose_step(scene)[0]
+        moving = movable(case, [load.side for load in case.load])
+        front = front_of_bar(scene, step)
+        spacing = {side: bar.end(side).length / bar.end(side).cells for side in ("left", "right")}
+        targets = monitored(scene) if case.monitor else scene.positions[[0, -1]]
+        cells = {"left": 0, "right": 0}
+        for side in moving:
+            plane = bar.length if side == "right" else 0.0
+            needed = plane_needed(side, sources_of_bar(case), targets, front, case.run.duration)
+            beyond = needed - plane if side == "right" else plane - needed
+            cells[side] = max(0, int(np.ceil(beyond / spacing[side] - 1e-9))) if np.isfinite(beyond) else 0
+        count = bar.nodes - 1 + sum(cells.values())
+        longer = {side: cells[side] * spacing[side] for side in cells}
+        length = bar.length + sum(longer.values()) if bar.range else count * spacing["left"]
+        must_not_exceed(count + 1, min(most, MOST_CELLS), f"{length:g} m", case)
+        sentence = sentence_of(case, f"the same bar {length:g} m long, {count + 1:,} nodes", moving)
+        if not any(cells.values()):
+            return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
+        shift = longer["left"]
+        monitors = tuple(
+            monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
+        )
+        larger = replace(
+            case,
+            bar=_lengthened(bar, longer, length),
+            monitor=monitors,
+            run=same_step(case.run, step),
+            name=f"{case.name}_extended",
+        )
+        return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))
 
     def exact(self, case: BarCase) -> PulseInBar | None:
         """The exact motion under a pulse at the left end of a bar without attenuation; None for other bars."""

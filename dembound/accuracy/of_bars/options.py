@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from dembound.accuracy.choice import COARSER, OWN, Named, changed, keeps, label, valid
 from dembound.bar import stability
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import is_bounded_at_limit, own_step, unit_step
 from dembound.casefile.bar.model import BarCase
@@ -234,8 +234,6 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
 
 HORIZON = 3
 """Horizon of bars' methods where the case has none."""
-
-"""Keys of ``[run]`` that determine the step of a bar."""
 
 
 def bar_choices(case: BarCase) -> Named:

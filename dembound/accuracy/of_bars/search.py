@@ -12,13 +12,20 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.judge import no_seed
-from dembound.accuracy.of_bars.causes import EQUAL, FACTOR, HOW, QUIET, difference, largest_motion, not_linear, split
-from dembound.accuracy.of_bars.exact import ExactMotion
+from dembound.accuracy.of_bars.causes import (
+    EQUAL,
+    FACTOR,
+    HOW,
+    QUIET,
+    ExactMotion,
+    difference,
+    largest_motion,
+    not_linear,
+    split,
+)
 from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
-from dembound.accuracy.proposal import Advice, Proposal
-from dembound.accuracy.watch import Watch
+from dembound.accuracy.proposal import Advice, Proposal, Watch, ended_earlier
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase

@@ -4,28 +4,74 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
-from dembound.accuracy.of_disks.misplaced import errors_of_held_side, errors_of_places, is_moved
-from dembound.accuracy.of_disks.sliding import errors_of_steps, settled_of
+from dembound.accuracy.of_disks.measured import (
+    errors_of_held_side,
+    errors_of_places,
+    errors_of_steps,
+    is_moved,
+    settled_of,
+)
+from dembound.accuracy.proposal import Watch
 from dembound.accuracy.runner import Runner
-from dembound.accuracy.watch import Watch
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import DemboundError
 from dembound.formulas.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
+from dembound.formulas.disks.continuum import causes_of_continuum
+from dembound.formulas.disks.dispersion import Dispersion, causes_of_kinks
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.formulas import Formulas
-from dembound.formulas.disks.held_sides import HeldSides
-from dembound.formulas.disks.kinks import causes_of_kinks
+from dembound.formulas.disks.held_sides import DrivenSides, HeldSides
+from dembound.formulas.disks.near_disks import causes_at_edges, causes_at_surface, causes_near_loads, causes_of_walls
 from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.rest import REST, causes_of_rest
 from dembound.formulas.history import Motions
 from dembound.results.compare import at_times
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """The formulas of one scene, which runs at a time step (s); reflections : of its sides."""
+
+    scene: DiskScene
+    time_step: float
+    reflections: Reflections = field(default_factory=Reflections, repr=False)
+
+    def causes(self, motions: Motions) -> list[Cause]:
+        """All causes but absorbing sides without waves; motions : by monitor."""
+        scene = self.scene
+        return [
+            *causes_of_continuum(scene, {name: own.place for name, own in motions.items()}),
+            *DrivenSides(scene, self.time_step, self.held_sides, self.reflections).causes(motions),
+            *self.dispersion.causes(motions),
+            *causes_of_walls(scene, motions),
+            *causes_near_loads(scene, motions),
+            *causes_at_edges(scene, motions),
+            *causes_at_surface(scene, motions),
+            *self.held_sides.causes(motions),
+        ]
+
+    def without_motion(self, names: Sequence[str]) -> list[Cause]:
+        """The causes that do not depend on the motion, at monitors of these names."""
+        places = {name: self.scene.monitored[name] for name in names}
+        return [*causes_of_continuum(self.scene, places), *causes_of_walls(self.scene, names)]
+
+    @cached_property
+    def held_sides(self) -> HeldSides:
+        """Sides of the problem itself that hold disks."""
+        return HeldSides(self.scene)
+
+    @cached_property
+    def dispersion(self) -> Dispersion:
+        """Delays of waves by the disks and by the steps."""
+        return Dispersion(self.scene, self.time_step)
+
 
 LEAST_LATE = 1e-4
 """Shift of all motion over the duration of a run from which on it is said."""
@@ -180,8 +226,12 @@ def causes_of_choice(
     ground = ground or ground_causes(companions, scene, time_step)
     found = Causes(ground, _not_counted(scene), motions=companions.recorded(scene))
     if sides_of_pair(scene.case):
-        sides = sides_cause(companions, scene, time_step, wider)
-        found += Causes([sides], _breaks(companions), _echoes(companions), 0.0, companions.echo_free)
+        sides, missing, notes = sides_cause(companions, scene, time_step, wider), [], []
+        if math.isfinite(companions.first_break):
+            missing = [f"{SIDES} after {companions.first_break:.3g} s, when bonds break in the companion"]
+        if not companions.echo_free:
+            notes = [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]
+        found += Causes([sides], missing, notes, 0.0, companions.echo_free)
     return found
 
 
@@ -256,17 +306,3 @@ def _not_counted(scene: DiskScene) -> list[str]:
     held = HeldSides(scene).driven_under_loads
     words = "disks are held at centres, inside of the plane, so that waves of loads come back a little early"
     return [f"{' and '.join(held)}: {words}: not counted"] if held else []
-
-
-def _breaks(companions: Companions) -> list[str]:
-    """A line with the time up to which sides are compared, if bonds break in the companion."""
-    if not math.isfinite(companions.first_break):
-        return []
-    return [f"{SIDES} after {companions.first_break:.3g} s, when bonds break in the companion"]
-
-
-def _echoes(companions: Companions) -> list[str]:
-    """A line that the far companion is too small to be free of echoes, where it is."""
-    if companions.echo_free:
-        return []
-    return [f"{SIDES}: the larger scene, {companions.far_size}, has echoes of its own"]

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.moved_sides import movable
+from dembound.accuracy.judge import movable
 from dembound.accuracy.of_disks.coarser import Coarser, coarser
 from dembound.accuracy.of_disks.enlarged import Pair, bricks_needed, enlarged, pair_of, ratios, sides_of_pair
 from dembound.accuracy.runner import Run, Runner, at_step

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from dembound.accuracy.moved_sides import Extended, movable, must_not_exceed, same_step, sentence_of
+from dembound.accuracy.judge import Extended, movable, must_not_exceed, same_step, sentence_of
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.boundaries.edge import SIDES, is_far, normal_axis, plane_of
 from dembound.casefile.disks.load import Load, Monitor

@@ -10,10 +10,10 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import OWN, Choice, Named
-from dembound.accuracy.judge import Judge
-from dembound.accuracy.moved_sides import Extended
-from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates
+from dembound.accuracy.judge import Extended, Judge
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates, disk_choices
 from dembound.accuracy.of_disks.causes import (
+    Formulas,
     causes_of_choice,
     causes_of_run,
     entry_notes,
@@ -21,25 +21,22 @@ from dembound.accuracy.of_disks.causes import (
     quick_causes,
     rest_causes,
 )
-from dembound.accuracy.of_disks.chart_choices import disk_choices
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.cost import planned_cost
 from dembound.accuracy.of_disks.enlarged import extended_disks
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLayeredColumn, ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
+from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.of_disks.search import Search, before_breaks
-from dembound.accuracy.of_disks.seeds import cause_of_packing
-from dembound.accuracy.proposal import Advice, Proposal
+from dembound.accuracy.proposal import Advice, Proposal, Watch
 from dembound.accuracy.reference import Exact
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
-from dembound.accuracy.watch import Watch
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import LAWS, require_linear
 from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.formulas.cause import Causes, Truth
-from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.disks.rest import causes_of_rest
 from dembound.formulas.history import Motions
@@ -48,61 +45,6 @@ from dembound.motion.kind import Plan
 from dembound.running.planning import plan
 from dembound.schemas import with_changes
 from dembound.words import percent
-
-
-def advice_for_disks(
-    case: DiskCase,
-    bounds: Sequence[float],
-    of: Truth,
-    kept: Sequence[str],
-    longest: float | None,
-    seeds: int,
-    watch: Watch,
-) -> Advice:
-    """The errors of a case, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
-
-    of : truth to which errors are relative; with "disks" the disks do not change. kept : keys that do not change.
-    longest : CPU seconds that the steps of a choice may take; None: the default. seeds : random packings that are run
-    to find the scatter of the case's motion; choices do not depend on it. watch : told of what is done, and of what is
-    known before all is. A case that keeps the only bound in less time than a search takes is the choice itself.
-
-    Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building and
-    running the companions.
-    """
-    _require_known(case)
-    kept = [*kept, "packing.radius"] if of == "disks" else kept
-    watch.begins("the packing, and the time step")
-    planned: Plan[DiskScene] = plan(case)
-    most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    runner, reflections = Runner(shown=watch.run), Reflections(watch.begins)
-    companions = Companions(case, planned.scene, planned.time_step, most, runner, reflections)
-    try:
-        moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
-    except CaseError as error:
-        what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
-        raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
-    if not _is_reached(planned) or not any(map(np.any, moved)):
-        raise CaseError(["advise: nothing moves at the monitors"], case.name)
-    given = _given(companions, of, planned_cost(planned).seconds, watch)
-    shown = given
-    if seeds > 1:
-        shown = given.with_causes(cause_of_packing(case, given.budget.motions, seeds, watch.run))
-    watch.given(shown)
-    if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
-        watch.best(bounds[0], given)
-        return Advice(shown, {bounds[0]: given}, 1)
-    searches = [Search(companions, Candidates(planned, kept, given.cost, runner, longest=longest), of, kept, watch)]
-    searches[0].know(given.budget)
-    if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
-        own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
-        candidates = Candidates(twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest)
-        searches.insert(0, Search(own, candidates, of, kept, watch))
-    best = {}
-    for number, bound in enumerate(sorted(bounds, reverse=True)):
-        watch.part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"
-        best[bound] = _best(given, case, searches, bound)
-        watch.best(bound, best[bound])
-    return Advice(shown, best, sum(search.tried for search in searches))
 
 
 def _given(companions: Companions, of: Truth, cost: float, watch: Watch) -> Proposal:
@@ -205,9 +147,49 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         seeds: int,
         watch: Watch,
     ) -> Advice:
-        """The cheapest disks, sides and boxes in a continuum."""
+        """The cheapest disks, sides and boxes in a continuum.
+
+        With the truth "disks" the disks do not change; choices do not depend on the scatter between packings. A case
+        that keeps the only bound in less time than a search takes is the choice itself.
+
+        Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building
+        and running the companions.
+        """
         require_linear(case.material.law)
-        return advice_for_disks(case, bounds, of, kept, longest, seeds, watch)
+        _require_known(case)
+        kept = [*kept, "packing.radius"] if of == "disks" else kept
+        watch.begins("the packing, and the time step")
+        planned: Plan[DiskScene] = plan(case)
+        most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
+        runner, reflections = Runner(shown=watch.run), Reflections(watch.begins)
+        companions = Companions(case, planned.scene, planned.time_step, most, runner, reflections)
+        try:
+            moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
+        except CaseError as error:
+            what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
+            raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
+        if not _is_reached(planned) or not any(map(np.any, moved)):
+            raise CaseError(["advise: nothing moves at the monitors"], case.name)
+        given = _given(companions, of, planned_cost(planned).seconds, watch)
+        shown = given
+        if seeds > 1:
+            shown = given.with_causes(cause_of_packing(case, given.budget.motions, seeds, watch.run))
+        watch.given(shown)
+        if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
+            watch.best(bounds[0], given)
+            return Advice(shown, {bounds[0]: given}, 1)
+        searches = [Search(companions, Candidates(planned, kept, given.cost, runner, longest=longest), of, kept, watch)]
+        searches[0].know(given.budget)
+        if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
+            own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
+            candidates = Candidates(twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest)
+            searches.insert(0, Search(own, candidates, of, kept, watch))
+        best = {}
+        for number, bound in enumerate(sorted(bounds, reverse=True)):
+            watch.part = f"within {percent(bound, 3)}, {number + 1} of {len(bounds)}"
+            best[bound] = _best(given, case, searches, bound)
+            watch.best(bound, best[bound])
+        return Advice(shown, best, sum(search.tried for search in searches))
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""

@@ -17,7 +17,6 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, digest
-from dembound.accuracy.end import ended_earlier
 from dembound.accuracy.of_disks.candidates import CUT, PER_ERROR, Candidates, option_of
 from dembound.accuracy.of_disks.causes import (
     PLACES,
@@ -30,13 +29,12 @@ from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.options import Built, DiskOption
-from dembound.accuracy.proposal import Proposal
-from dembound.accuracy.watch import Watch
+from dembound.accuracy.proposal import Proposal, Watch, ended_earlier
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
 from dembound.formulas.cause import SIDES, STEP, Cause, Causes, Truth
-from dembound.formulas.disks.walls import WALL_FACTOR, wall_errors
+from dembound.formulas.disks.near_disks import WALL_FACTOR, wall_errors
 from dembound.formulas.history import History
 
 MORE = 1.1

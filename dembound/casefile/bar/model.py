@@ -13,12 +13,9 @@ from dembound.casefile.model import (
     Case,
     Schema,
     driving_waves,
+    monitor_problems,
     never_estimated,
-    never_past_peak,
-    never_silent,
-    repeated_names,
-    steps_too_long,
-    too_many,
+    run_problems,
     unknown_waves,
 )
 from dembound.casefile.tables import Chart, Output, Run, Sweep
@@ -92,9 +89,7 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
         yield from end.problems(side, tables) if end else ()
     yield from _across_the_bar(tables["boundary"])
     yield from _loaded_but_held(tables["boundary"], tables["load"])
-    for key in ("load", "monitor"):
-        yield from repeated_names(key, tables[key])
-    yield from too_many(tables["monitor"])
+    yield from monitor_problems(tables)
     bar = tables["bar"]
     written = given.get("bar", {})
     if isinstance(written, Mapping) and "length" not in written and not written.get("range"):
@@ -105,13 +100,11 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
         if tables["method"]:
             yield from _horizon_too_long(bar, tables["method"])
     if tables["output"]:
-        yield from never_estimated(tables["output"], tables["monitor"])
+        yield from never_estimated(tables)
         if tables["output"].load_factor:
             yield "output.load_factor: is for disks, not for bars"
     if tables["run"]:
-        yield from steps_too_long(tables["run"], tables["output"])
-        yield from never_silent(tables["run"], tables["monitor"])
-        yield from never_past_peak(tables["run"], tables["boundary"])
+        yield from run_problems(tables)
         if bar:
             yield from _courant_too_large(bar, tables["run"])
 

@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import create_model, model_validator
 
-from dembound.casefile.disks.law import FIELDS, keys_problems, with_history
-from dembound.casefile.disks.targets import PAIRS, PlaneModuli, Scatter, Target
+from dembound.casefile.disks.targets import FIELDS, PAIRS, PlaneModuli, Scatter, Target, keys_problems, with_history
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
 
@@ -250,12 +249,9 @@ class MaterialTable(Table):
         if pair == PAIRS[2]:
             if "plane" in self.model_fields_set:
                 problems.append("plane: is only allowed together with young and poisson, or bulk and shear")
-            if (
-                self.s_wave_speed is not None
-                and self.p_wave_speed is not None
-                and self.s_wave_speed >= self.p_wave_speed
-            ):
-                problems.append(f"s_wave_speed: is {self.s_wave_speed:g}, must be less than p_wave_speed")
+            p_speed, s_speed = self.p_wave_speed, self.s_wave_speed
+            if s_speed is not None and p_speed is not None and s_speed >= p_speed:
+                problems.append(f"s_wave_speed: is {s_speed:g}, must be less than p_wave_speed")
         if pair == PAIRS[1] and self.along != "isotropic":
             problems.append('along: is of waves or of a test; with bulk and shear it must be "isotropic"')
         if self.poisson is not None and self.plane == "strain" and self.poisson >= 0.5:

@@ -6,15 +6,12 @@ from functools import cached_property
 from typing import Literal
 
 from dembound.boundaries.viscous import Bearing
-from dembound.casefile.disks.damping import Damping
 from dembound.casefile.disks.ground import Ground, floors, lowered
-from dembound.casefile.disks.incident import IncidentWave, Motion
-from dembound.casefile.disks.intact import bearing_of, intact_depths
-from dembound.casefile.disks.layer import Layer, bottoms
+from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
+from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.outside import OutsideTable
-from dembound.casefile.disks.static import Static, begins_stressed
+from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
 from dembound.holes.hole import Floor, Hole

@@ -8,26 +8,29 @@ from pydantic import TypeAdapter
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.platen import beside_disks
-from dembound.casefile.disks.damping import Damping, damping_problems, is_damped
 from dembound.casefile.disks.ground import Ground, ground_problems, hole_problems, lowered_in, lowered_problems, reach
-from dembound.casefile.disks.incident import IncidentWave, Motion, incident_problems, motion_problems
-from dembound.casefile.disks.law import law_problems, with_history
-from dembound.casefile.disks.layer import Layer, completed_by_layers, layer_problems
+from dembound.casefile.disks.incident import (
+    Damping,
+    IncidentWave,
+    Motion,
+    damping_problems,
+    incident_problems,
+    is_damped,
+    motion_problems,
+)
+from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
-from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.static import Static, static_problems
+from dembound.casefile.disks.targets import law_problems, with_history
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
     Schema,
     driving_waves,
+    monitor_problems,
     never_estimated,
-    never_past_peak,
-    never_silent,
-    repeated_names,
-    steps_too_long,
-    too_many,
+    run_problems,
     unknown_waves,
 )
 from dembound.casefile.tables import Chart, Output, Sweep
@@ -61,9 +64,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["packing"]:
         for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
             yield from _nothing_to_pack_with(place, table, tables["packing"])
-    for key in ("hole", "load", "monitor"):
-        yield from repeated_names(key, tables[key])
-    yield from too_many(tables["monitor"])
+    yield from monitor_problems(tables)
     yield from pressed_side_problems(numbered("load", tables["load"]), tables)
     yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
@@ -89,11 +90,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         yield from static_problems(*settling, has_column=not lowered_in(tables))
     if tables["run"]:
-        yield from steps_too_long(tables["run"], tables["output"])
-        yield from never_silent(tables["run"], tables["monitor"])
-        yield from never_past_peak(tables["run"], tables["boundary"])
+        yield from run_problems(tables)
     if tables["output"]:
-        yield from never_estimated(tables["output"], tables["monitor"])
+        yield from never_estimated(tables)
 
 
 def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.support import Edge, SupportBuilder
-from dembound.casefile.disks.outside import CONTINUUM
+from dembound.casefile.disks.layer import CONTINUUM
 from dembound.continuum.edges import free_edges
 from dembound.continuum.medium import Ground, Layered
 from dembound.continuum.mesh import Mesh

@@ -11,7 +11,7 @@ import numpy as np
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import GroundMotion
 from dembound.disks.surroundings.layered_waves import Undisturbed
-from dembound.motion.recorded_nodes import Beside
+from dembound.motion.scene import Beside
 from dembound.packings.column import nearest_in_column
 from dembound.packings.tiling import Assembly
 

@@ -6,20 +6,221 @@ wave, and t(u) the traction of the ground beyond on the side, the error e by a s
 obeys the equations of the body, into which no wave enters, under the force −C ė − K e − (C u̇ + K u + t(u)) per length
 of the side. Where a wall holds a component, e = −u.
 
-Ground and error are computed on a coarse grid (coarse_grid.py).
+Ground and error are computed on a coarse grid of linear and bilinear elements of the homogenised packing, with central
+differences. Holes are left out. Components and axes are 0 across the wave and 1 along it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from dembound.boundaries import SIDES, Motion, is_far, normal_axis
+from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene
-from dembound.formulas.disks.coarse_grid import ALONG, BESIDE, Grid, Ground, stiffness_of, undisturbed
+from dembound.disks.sides import ground_at, layers_beside
+from dembound.disks.surroundings.frequencies import mean_frequency
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+PER_WAVELENGTH = 30.0
+"""Elements in a wave of the mean frequency at the slowest speed."""
+
+FEWEST, MOST = 12, 100
+"""Smallest and largest number of elements along an axis."""
+
+SAFETY = 0.9
+"""Time step over the largest stable one."""
+
+ALONG, BESIDE = [2, 1], [0, 3]
+"""The gradients of both components along the wave, and those whose stresses act on planes along it; see GRADIENTS."""
+
+
+class End(NamedTuple):
+    """Supports of a side: dashpots (2,) N·s/m² and springs (2,) N/m² per length, and which components (2,) move."""
+
+    damping: np.ndarray
+    stiffness: np.ndarray
+    moves: np.ndarray
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The body of a scene as a grid of elements.
+
+    Attributes
+    ----------
+    axis : of the wave in the scene. origin, size : (2,) m. cells : (2,) numbers of elements. density : (r,) kg/m³ and
+    tensor : (r, 4, 4) Pa, see `homogenise.GRADIENTS`, of rows of elements along the wave. free : (2,) components that
+    are not held. ends : supports of each side.
+    """
+
+    axis: int
+    origin: np.ndarray
+    size: np.ndarray
+    cells: np.ndarray
+    density: np.ndarray
+    tensor: np.ndarray
+    free: np.ndarray
+    ends: Mapping[str, End]
+
+    @classmethod
+    def of(cls, scene: DiskScene, axis: int) -> Grid:
+        """The coarse grid of a scene for a wave along an axis."""
+        order, gradients = ([0, 1], [0, 1, 2, 3]) if axis == 1 else ([1, 0], [1, 0, 3, 2])
+        ground, box = scene.ground, np.array(scene.case.packing.box)
+        size = (box[2:] - box[:2])[order]
+        frequency, speeds = mean_frequency(scene.case), np.array(ground.wave_speeds(axis))
+        known = math.isfinite(frequency) and (speeds > 0.0).any()
+        requested = size * PER_WAVELENGTH * frequency / speeds[speeds > 0.0].min() if known else np.full(2, MOST / 2)
+        cells = np.clip(np.ceil(requested), FEWEST, MOST).astype(int)
+        free = np.array([component not in ground.held for component in order])
+        nodes = box[1] + (box[3] - box[1]) * np.arange(cells[1] + 1) / cells[1]
+        ends = {side: _end(scene, side, order, free, nodes) for side in SIDES}
+        height = box[axis] + size[1] / cells[1] * (np.arange(cells[1]) + 0.5)
+        rows = [ground.at(y) if axis == 1 else ground for y in height.tolist()]
+        tensor = np.stack([row.material_tensor[np.ix_(gradients, gradients)] for row in rows])
+        return cls(axis, box[:2][order], size, cells, np.array([row.density for row in rows]), tensor, free, ends)
+
+    @property
+    def spacing(self) -> np.ndarray:
+        """Sides (2,) m of the elements."""
+        return self.size / self.cells
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes, row after row across the wave."""
+        return int(np.prod(self.cells + 1))
+
+    def row(self, side: str) -> np.ndarray:
+        """The nodes of a side."""
+        numbers = np.arange(self.nodes).reshape(self.cells[1] + 1, self.cells[0] + 1)
+        last = -1 if is_far(side) else 0
+        return numbers[last] if normal_axis(side) == self.axis else numbers[:, last]
+
+    def weights(self, side: str) -> np.ndarray:
+        """Length (m) of a side that belongs to each of its nodes, (k, 1)."""
+        spacing = self.spacing[0 if normal_axis(side) == self.axis else 1]
+        weights = np.full((len(self.row(side)), 1), spacing)
+        weights[[0, -1]] *= 0.5
+        return weights
+
+    def around(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Nodes (m, 4) round places (m, 2) m of the scene, their weights (m, 4), and heights (m,) in elements."""
+        places = (positions[:, [0, 1] if self.axis == 1 else [1, 0]] - self.origin) / self.spacing
+        places = np.clip(places, 0.0, self.cells)
+        first = np.minimum(places.astype(int), self.cells - 1)
+        (x, y), row = (places - first).T, self.cells[0] + 1
+        nodes = (first @ [1, row])[:, None] + np.array([0, 1, row, row + 1])
+        weights = np.stack([(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y], axis=1)
+        return nodes, weights, places[:, 1]
+
+    @property
+    def time_step(self) -> float:
+        """A stable step (s): the eigenvalue of one element bounds those of all; springs at sides are added."""
+        largest = np.array([np.linalg.eigvalsh(element)[-1] for element in _elements(self)])
+        mass = 0.25 * self.density * float(np.prod(self.spacing))
+        springs = max(float(end.stiffness.max()) for end in self.ends.values())
+        squares = largest / mass + 4.0 * springs / (self.density * float(self.spacing.min()))
+        return SAFETY * 2.0 / math.sqrt(squares.max())
+
+
+def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray, heights: np.ndarray) -> End:
+    """The supports of a side, or the dashpots of the ground beyond; order : of the scene's axes.
+
+    heights : (k,) m, of the nodes along upright sides in layers, in which dashpots and springs are (k, 2).
+    """
+    table, axis, none = scene.case.side(side), normal_axis(side), np.zeros(2)
+    if table.is_outside:
+        p, s = np.nan_to_num(ground_at(scene, side).wave_speeds(axis)) * ground_at(scene, side).density
+        return End(np.array([p, s] if axis == order[0] else [s, p]), none, free)
+    if table.is_mirror:
+        return End(none, none, free & (np.array(order) != axis))
+    if side not in scene.edges:
+        return End(none, none, free)
+    moves = free & ~np.isin(order, table.prescribed(axis))
+    layers = layers_beside(scene, side)
+    if len(layers) == 1:
+        held = Held.of(scene, side)
+        return End(held.damping[order], held.stiffness[order], moves)
+    by_layer = [Held.of(scene, side, part) for part in range(len(layers))]
+    beside = np.searchsorted(-np.array(layers), -scene.ground.layer_of(heights)).clip(max=len(layers) - 1)
+    damping, stiffness = (np.stack(values)[beside][:, order] for values in zip(*by_layer, strict=True))
+    return End(damping, stiffness, moves)
+
+
+def _elements(grid: Grid) -> np.ndarray:
+    """Stiffness matrices (r, 8, 8) N/m of the elements of each row."""
+    return np.stack([_element(tensor, grid.spacing) for tensor in grid.tensor])
+
+
+def _element(tensor: np.ndarray, spacing: np.ndarray) -> np.ndarray:
+    """Stiffness matrix (8, 8) N/m of a bilinear element; nodes in the order (0, 0), (1, 0), (0, 1), (1, 1)."""
+    found, points = np.zeros((8, 8)), 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0)
+    for x in points:
+        for y in points:
+            slopes = np.array([[y - 1.0, 1.0 - y, -y, y], [x - 1.0, -x, 1.0 - x, x]]) / spacing[:, None]
+            gradients = np.zeros((4, 8))
+            gradients[0, 0::2], gradients[1, 1::2], gradients[2, 0::2], gradients[3, 1::2] = slopes[[0, 1, 1, 0]]
+            found += 0.25 * float(np.prod(spacing)) * gradients.T @ tensor @ gradients
+    return found
+
+
+def stiffness_of(grid: Grid) -> csr_matrix:
+    """Stiffness matrix of all elements, of both components of every node beside each other."""
+    from scipy.sparse import coo_matrix
+
+    elements, (across, along) = _elements(grid), grid.cells
+    first = (np.arange(along)[:, None] * (across + 1) + np.arange(across)).reshape(-1, 1)
+    nodes = first + np.array([0, 1, across + 1, across + 2])
+    dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, 8)
+    rows, columns = np.repeat(dofs, 8, axis=1).ravel(), np.tile(dofs, 8).ravel()
+    values = np.repeat(elements, across, axis=0).ravel()
+    return coo_matrix((values, (rows, columns)), shape=(2 * grid.nodes, 2 * grid.nodes)).tocsr()
+
+
+class Ground(NamedTuple):
+    """The undisturbed ground: displacements (n, k, 2) m of rows at steps, velocities (n, k, 2) half a step later."""
+
+    u: np.ndarray
+    v: np.ndarray
+
+
+def undisturbed(grid: Grid, driven: str, incoming: np.ndarray, shifts: np.ndarray, step: float) -> Ground:
+    """The ground under a wave that enters through a side; incoming, shifts : its motion (n, 2) m/s and m at steps.
+
+    A side that prescribes a component moves with the wave in this component.
+    """
+    low, high = ("left", "right") if grid.axis == 0 else ("bottom", "top")
+    count, height = grid.cells[1] + 1, grid.spacing[1]
+    mass, damping, springs = np.zeros((count, 1)), np.zeros((count, 2)), np.zeros((count, 2))
+    mass[:-1, 0] += 0.5 * height * grid.density
+    mass[1:, 0] += 0.5 * height * grid.density
+    moves = np.tile(grid.free, (count, 1))
+    for side, row in ((low, 0), (high, -1)):
+        damping[row], springs[row], moves[row] = grid.ends[side]
+    at, moduli = (0 if driven == low else -1), grid.tensor[:, ALONG][:, :, ALONG] / height
+    enters = 2.0 * damping[at] * incoming + springs[at] * shifts
+    taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
+    u, v = np.zeros((len(incoming), count, 2)), np.zeros((len(incoming), count, 2))
+    now, speed = np.zeros((count, 2)), np.zeros((count, 2))
+    for n in range(len(incoming)):
+        stress = (moduli @ np.diff(now, axis=0)[:, :, None])[:, :, 0]
+        force = -springs * now
+        force[:-1] += stress
+        force[1:] -= stress
+        force[at] += enters[n]
+        speed = np.where(moves, (kept * speed + force) / taken, 0.0)
+        speed[at] = np.where(moves[at], speed[at], grid.free * incoming[n])
+        u[n], v[n] = now, speed
+        now = now + step * speed
+    return Ground(u, v)
+
 
 WORK = 2e7
 """Largest number of nodes times steps; of longer runs only the beginning is computed, from the wave's start on."""
@@ -36,12 +237,8 @@ def error_beside(
     nodes, weights : (m, 4) of the places, see `Grid.around`.
     """
     matrix, shape = stiffness_of(grid), (grid.nodes, 2)
-    mass, damping, springs, moves = (
-        np.zeros((grid.nodes, 1)),
-        np.zeros(shape),
-        np.zeros(shape),
-        np.tile(grid.free, (grid.nodes, 1)),
-    )
+    mass, damping, springs = np.zeros((grid.nodes, 1)), np.zeros(shape), np.zeros(shape)
+    moves = np.tile(grid.free, (grid.nodes, 1))
     numbers = np.arange(grid.nodes).reshape(grid.cells[1] + 1, -1)
     for corner in (numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, :-1], numbers[1:, 1:]):
         mass[corner] += 0.25 * grid.density[:, None, None] * float(np.prod(grid.spacing))

@@ -26,9 +26,8 @@ from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.disks.sources import sources_of
 from dembound.formulas.cause import MOTIONS, USUAL, Cause, Causes, share_of
-from dembound.formulas.delays import error_of_delay
 from dembound.formulas.disks.waves import is_square_lattice
-from dembound.formulas.history import Motions
+from dembound.formulas.history import Motions, error_of_delay
 from dembound.motion.paths import Source
 from dembound.table import EVERYWHERE
 

@@ -15,9 +15,9 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import plane_wave_frequencies
 from dembound.disks.scene import DiskScene
 from dembound.exact.column import Column, Layer
-from dembound.exact.histories import DECAY, PADDED
-from dembound.formulas.delays import Delay, going_on
+from dembound.exact.transform import DECAY, PADDED
 from dembound.formulas.disks.entry import mass_begins
+from dembound.formulas.history import Delay, going_on
 from dembound.packings.square import Square
 
 LONG, SHORT, PHASES = 1e-3, 0.3, 1000

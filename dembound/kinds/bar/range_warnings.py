@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import BarScene
 from dembound.bar.stability import BELOW
 from dembound.casefile.bar import BarCase

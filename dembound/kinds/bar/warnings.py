@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.bar.linear_steps import carrying_lattices
 from dembound.bar.scene import MOMENTS, BarScene, bar_medium, end_supports, entering_pressure, moments
-from dembound.bar.stability import shortened_in_words
+from dembound.bar.stability import carrying_lattices, shortened_in_words
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.boundaries.description import TOO_MUCH, poor_factor, reflected
 from dembound.casefile.bar import BarCase
@@ -21,8 +20,8 @@ from dembound.casefile.magnitudes import (
     time_warnings,
 )
 from dembound.casefile.unlikely import unlikely_in
-from dembound.kinds.bar.facts import PERCENT, cells_of_waves
 from dembound.kinds.bar.range_warnings import monitors_between_sections, monitors_in_gaps, range_warnings
+from dembound.kinds.bar.summary import PERCENT, cells_of_waves
 from dembound.meanings import fading
 from dembound.words import percent, with_unit
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.bar.banded import ROUNDING
+from dembound.bar.body import ROUNDING
 from dembound.bar.scene import MOMENTS, BarScene, entering_pressure
 from dembound.boundaries import normal_axis
 from dembound.casefile.bar import BarCase

@@ -1,4 +1,7 @@
-"""The continuum round a body in words: its elements, the errors to expect, its share of the cost, and warnings."""
+"""The continuum round a body in words: its elements, the errors to expect, its share of the cost, and warnings.
+
+No setting reduces errors by the disks themselves: dispersion, and copies of bricks.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +12,64 @@ from itertools import product
 import numpy as np
 
 from dembound.boundaries.edge import normal_axis
-from dembound.casefile.disks.outside import OutsideTable
+from dembound.casefile.disks.layer import OutsideTable
 from dembound.casefile.messages import counted
 from dembound.continuum import sizing
 from dembound.continuum.layer import RETURNED
 from dembound.continuum.sizing import Signal
 from dembound.disks import step_cost
+from dembound.disks.material import packing_waves
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.near_fields import lasting_time, signals_of
 from dembound.disks.surroundings.settings import ROUNDING, buried, least_element, margin_below_surface
-from dembound.formulas.disks.continuum import coarsest, elements_by_layer, largest_element, near_error
-from dembound.kinds.disks.packing_facts import packing_facts
-from dembound.words import Entries, percent
+from dembound.formulas.disks.continuum import coarsest, elements_by_layer, largest_element, lattice_errors, near_error
+from dembound.words import Entries, percent, with_unit
+
+LEAST_SHOWN = 1e-5
+"""Share of the velocity reflected by copies below which it is not printed."""
+
+
+def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> Entries:
+    """Facts about a scene with a continuum and signals that do not jump."""
+    yield "dispersion of the disks", _dispersion(scene, signals)
+    if copies := _copies(scene, signals):
+        yield "copies of the brick", copies
+
+
+def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
+    """Text on the error by dispersion of the lattice."""
+    accuracy = scene.case.outside.accuracy
+    ties, across = lattice_errors(scene, signals)
+    more = f"; more than outside.accuracy = {percent(accuracy)}" if max(ties, across) > accuracy else ""
+    return (
+        f"ties return up to {percent(ties)} of the velocity of what meets them, and waves change by {percent(across)} "
+        f"over the scene's length{more}"
+    )
+
+
+def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
+    """Text on waves reflected by copies of a random brick; empty if negligible."""
+    case, ground = scene.case, scene.ground
+    if case.packing.is_lattice:
+        return ""
+    if len(ground.brick.radii) > packing_waves.MOST_DISKS:
+        return (
+            f"send back short waves, which is not computed for bricks of more than {packing_waves.MOST_DISKS:,} disks"
+        )
+    axes = sorted({normal_axis(side) for side in case.driving})
+    found = packing_waves.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    share, accuracy = found.share, case.outside.accuracy
+    beyond = f"waves above {with_unit(found.highest, 'Hz')}, which have {percent(found.above)} of the energy"
+    if share < LEAST_SHOWN:
+        return f"send back {beyond}, by a part that is not computed" if found.above > 0.0 else ""
+    more = f"; more than outside.accuracy = {percent(accuracy)}, shorter bricks send back less"
+    return (
+        f"send back up to {percent(share)} of the velocity over the ground's length, which a continuum does not"
+        f"{f', and a part that is not computed of {beyond}' if found.above > 0.0 else ''}"
+        f"{more if share > accuracy else ''}"
+    )
+
 
 SHOWN = 5e-4
 """Depth (m) of a skin below which it is printed as zero."""
@@ -59,7 +107,10 @@ def continuum_facts(scene: DiskScene) -> Entries:
     if outside.levels:
         yield "ground beyond", _levels(outside)
     if any(abs(depth) >= SHOWN for depth in outside.skins.values()):
-        yield "its free edges", _skins(outside)
+        yield (
+            "its free edges",
+            ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items()),
+        )
     if scene.foot is not None:
         yield "below the column", f"{_elements(scene.foot)}; through it waves enter and leave"
     yield "absorbing layers", _layers(outside, signals)
@@ -82,11 +133,6 @@ def _elements(outside: Surroundings) -> str:
 def _from_to(sizes: np.ndarray) -> str:
     """The least and the largest of some sizes (m), one number if they are equal."""
     return "–".join(dict.fromkeys(f"{size:.4g}" for size in (sizes.min(), sizes.max())))
-
-
-def _skins(outside: Surroundings) -> str:
-    """Depths of the continuum's free edges inside those of the body, in words."""
-    return ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items())
 
 
 def _levels(outside: Surroundings) -> str:
@@ -134,8 +180,7 @@ def _as_small(scene: DiskScene, error: float) -> str:
 
 def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     """Begin, depth and reflection of the layers, in words."""
-    settings = outside.settings
-    mesh = outside.body.mesh
+    settings, mesh = outside.settings, outside.body.mesh
     low, high = mesh.between_layers
     left, right, bottom, top = mesh.sides
     distances = left - low[0], high[0] - right, bottom - low[1], high[1] - top

@@ -31,9 +31,14 @@ from dembound.kernels.contacts import UPDATED
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import with_incident_waves
 from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh
-from dembound.kinds.disks.summary import asked_stress, describe_static, disk_outcome, summarise_disks
+from dembound.kinds.disks.summary import (
+    asked_stress,
+    describe_static,
+    disk_outcome,
+    summarise_disks,
+    warnings_after_disks,
+)
 from dembound.kinds.disks.warnings import disk_warnings
-from dembound.kinds.disks.warnings_after import warnings_after_disks
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Stage, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source

@@ -8,7 +8,7 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.material.confined import require_stiffness
-from dembound.disks.material.first_crack import FirstCrack, first_crack
+from dembound.disks.material.first_crack import first_crack
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import DIRECTIONS, phase_speeds
 from dembound.disks.material.targets import moduli_of
@@ -80,6 +80,7 @@ def _describe(own: Own) -> dict[str, Any]:
     brick, tensor = ground.brick, ground.material_tensor
     speeds = phase_speeds(ground, np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
     names = ("emod", "pb_emod", "kratio", "pb_kratio", "pb_rmul", "fric")
+    cracks = {name: first_crack(ground, own.material, sign) for name, sign in LOADS.items()}
     lattice_shear = moduli.pb_rmul * moduli.pb_emod / moduli.pb_kratio
     if moduli.fric > 0.0:
         lattice_shear += moduli.emod / moduli.kratio
@@ -104,7 +105,7 @@ def _describe(own: Own) -> dict[str, Any]:
             }.items()
         },
         "anisotropy": _speeds(*(speeds.max(axis=0) / speeds.min(axis=0) - 1.0)),
-        "first_crack": {name: _described(first_crack(ground, own.material, sign)) for name, sign in LOADS.items()},
+        "first_crack": {name: None if found is None else found._asdict() for name, found in cracks.items()},
     }
 
 
@@ -125,10 +126,6 @@ def _isotropic(ground: PackedMaterial) -> np.ndarray:
 
 def _speeds(p: float, s: float) -> dict[str, float]:
     return {"p": float(p), "s": float(s)}
-
-
-def _described(found: FirstCrack | None) -> dict[str, Any] | None:
-    return None if found is None else found._asdict()
 
 
 def material_rows(found: dict[str, Any]) -> list[tuple[str, Sequence[Sequence[str]]]]:

@@ -12,10 +12,9 @@ from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.scene import DiskScene
 from dembound.kinds.disks.continuum_facts import continuum_warnings
-from dembound.kinds.disks.intact import intact_warnings
-from dembound.kinds.disks.load_warnings import load_warnings
+from dembound.kinds.disks.facts import intact_warnings
 from dembound.kinds.disks.micro_macro import Own, materials_of
-from dembound.kinds.disks.side_warnings import side_warnings, spring_warnings
+from dembound.kinds.disks.side_warnings import load_warnings, side_warnings, spring_warnings
 from dembound.kinds.disks.wave_warnings import wave_warnings
 from dembound.meanings import MEANINGS
 from dembound.words import percent, with_unit

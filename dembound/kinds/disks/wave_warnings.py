@@ -23,7 +23,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.sides import boundary_medium, medium_of_side
 from dembound.disks.surroundings.frequencies import share_above
 from dembound.errors import CaseError
-from dembound.kinds.disks.incident_facts import arrival
+from dembound.kinds.disks.incident_wave import arrival
 from dembound.kinds.disks.micro_macro import materials_of
 from dembound.places import spans_all
 from dembound.waves.constant import Constant

@@ -7,7 +7,7 @@ import pytest
 from advised import advised
 from small_cases import PUSHED, small
 
-from dembound.accuracy.advise import advise
+from dembound.accuracy.estimate import advise
 from dembound.accuracy.of_disks import candidates
 from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase

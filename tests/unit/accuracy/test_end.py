@@ -9,8 +9,7 @@ from small_cases import PUSHED, small
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice
-from dembound.accuracy.end import END, LEAST_SAVED, earlier_ends, ended_earlier
-from dembound.accuracy.proposal import Proposal
+from dembound.accuracy.proposal import END, LEAST_SAVED, Proposal, earlier_ends, ended_earlier
 from dembound.formulas.cause import Cause, Causes
 from dembound.formulas.history import History
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import checked, load

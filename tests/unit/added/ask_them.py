@@ -15,15 +15,14 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import dembound.kinds as kinds
 
-from dembound.accuracy.advise import advise
-from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.judges import extended
-from dembound.accuracy.of_disks.chart_choices import disk_choices
+from dembound.accuracy.estimate import advise, causes_of
+from dembound.accuracy.judge import extended
+from dembound.accuracy.of_disks.candidates import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.exact.references import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
+from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.of_disks.options import Options
-from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.runner import Runner, at_step
 from dembound.boundaries.description import side_in_words
 from dembound.disks.matching import Held
@@ -32,7 +31,7 @@ from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError
 from dembound.formulas.cause import share_of
-from dembound.formulas.disks.walls import wall_errors
+from dembound.formulas.disks.near_disks import wall_errors
 from dembound.formulas.history import History
 from dembound.kinds.disks.side_warnings import side_warnings
 from dembound.kinds.disks.summary import describe_side

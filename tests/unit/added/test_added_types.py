@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dembound.formulas.disks.walls import BETWEEN, CREEP, DARK, LIT, LONGEST, OF_WAVES, SHORT
+from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, LONGEST, OF_WAVES, SHORT
 
 HERE = Path(__file__).parent
 REGISTERED = {

@@ -14,7 +14,7 @@ with warnings.catch_warnings(record=True) as said:
 
 from dembound.casefile.types import BOUNDARIES
 from dembound.errors import CaseError, RunError
-from dembound.kinds.bar.facts import cells_of_waves
+from dembound.kinds.bar.summary import cells_of_waves
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.banded import is_stable, largest_stable_step
+from dembound.bar.body import is_stable, largest_stable_step
 
 ROUNDING = 1e-13
 """Rounding of the largest of 20 eigenvalues: either way of finding it rounds some 20 sums of 20 terms."""

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.part import BarPart
-from dembound.bar.scene import build_bar
+from dembound.bar.scene import BarPart, build_bar
 from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps

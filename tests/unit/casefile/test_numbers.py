@@ -6,7 +6,7 @@ import pytest
 import tomli_w
 from small_cases import PUSHED, SPALLING, SURROUNDED, Tables, problems_of, small
 
-from dembound.casefile.disks.outside import MOST_ELEMENTS
+from dembound.casefile.disks.layer import MOST_ELEMENTS
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.machine import Memory

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from dembound.exact import Lattice, cells_per_wavelength, courant_limit
-from dembound.exact.dispersion import usual_shares
+from dembound.exact.bar import usual_shares
 
 HORIZONS = [1, 2, 3, 8]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.formulas.delays import error_of_delay, error_of_steps
+from dembound.formulas.history import error_of_delay, error_of_steps
 
 TIME = np.linspace(0.0, 4.0, 801)
 LATE = 0.05

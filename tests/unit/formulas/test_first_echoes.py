@@ -1,6 +1,6 @@
 """Times of echoes at monitors, computed by hand."""
 
-from dembound.formulas.first_echoes import echoes
+from dembound.motion.kind import echoes
 from dembound.running import plan
 
 LONG = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.exact.dispersion import usual_shares
+from dembound.exact.bar import usual_shares
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
 

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from dembound.motion.clock import Clock
+from dembound.motion.trackers import Clock
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.motion.recorded_nodes import Between
+from dembound.motion.scene import Between
 
 
 def test_displacement_and_velocity_are_the_same_sum_over_nodes_with_the_same_bits_for_any_number_of_steps() -> None:

@@ -2,7 +2,7 @@
 
 import numba
 
-from dembound.motion.threads import PARTICLES_PER_THREAD, thread_count_for, threads_for
+from dembound.motion.memory import PARTICLES_PER_THREAD, thread_count_for, threads_for
 
 
 def test_small_scenes_get_one_thread_and_the_allowance_comes_back(monkeypatch) -> None:

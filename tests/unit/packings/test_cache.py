@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from dembound.packings import Square
-from dembound.packings.cache import clear, load_or_pack
+from dembound.packings.brick import clear, load_or_pack
 
 KEY = {"pattern": "T", "radius": 0.5, "size": (1.0, 1.0)}
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.scene import build
-from dembound.kinds.disks.warnings_after import warnings_after_disks
+from dembound.kinds.disks.summary import warnings_after_disks
 from dembound.motion.energy import Entry
 
 TIME = np.linspace(0.0, 1.0, 1001)

@@ -24,8 +24,7 @@ from dembound.accuracy.of_disks.exact.problem import (
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
-from dembound.exact.cavity import cavity_moment, cavity_motion
-from dembound.exact.garvin import buried_explosion
+from dembound.exact.explosion import buried_explosion, cavity_moment, cavity_motion
 from dembound.exact.solid import Solid
 from dembound.formulas.history import History
 from dembound.holes import Circle
@@ -79,23 +78,29 @@ class Blast:
 
 
 @dataclass(frozen=True)
-class CavityProblem(Problem):
+class PressureProblem(Problem):
+    """A problem of a pressure in a hole."""
+
+    blast: Blast
+
+    @classmethod
+    def concerns(cls, case: DiskCase) -> bool:
+        """Whether there is a pressure in a hole."""
+        return has_pressure(case)
+
+
+@dataclass(frozen=True)
+class CavityProblem(PressureProblem):
     """The wave of a pressure in a hole in a full space."""
 
     name: ClassVar[str] = "cavity"
     sentence: ClassVar[str] = "exact cavity in a full space"
-    blast: Blast
 
     @property
     def until(self) -> dict[str, float]:
         """Time (s) at which the wave returns from the free surface to each monitor."""
         blast = self.blast
         return echoes(blast.places, blast.hole, blast.surface, blast.solid.p_wave_speed, blast.wave.start)
-
-    @classmethod
-    def concerns(cls, case: DiskCase) -> bool:
-        """Whether there is a pressure in a hole."""
-        return has_pressure(case)
 
     @classmethod
     def of(cls, scene: DiskScene) -> Self:
@@ -119,24 +124,18 @@ class CavityProblem(Problem):
 
 
 @dataclass(frozen=True)
-class GarvinProblem(Problem):
+class GarvinProblem(PressureProblem):
     """A pressure in a hole that is small compared with its depth, as a line source below a free surface."""
 
     name: ClassVar[str] = "garvin"
     sentence: ClassVar[str] = (
         "line explosion below a free surface (Garvin), exact but for what the hole scatters of echoes"
     )
-    blast: Blast
 
     @property
     def until(self) -> dict[str, float]:
         """Infinite for every monitor; scattering of returning waves by the hole is of the order of size/depth."""
         return dict.fromkeys(self.blast.places, math.inf)
-
-    @classmethod
-    def concerns(cls, case: DiskCase) -> bool:
-        """Whether there is a pressure in a hole."""
-        return has_pressure(case)
 
     @classmethod
     def of(cls, scene: DiskScene) -> Self:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.accuracy.chart.front import TIE, Point, alike, cheapest_within, front, points_of
+from dembound.accuracy.chart.study import TIE, Point, alike, cheapest_within, front, points_of
 
 
 @pytest.mark.parametrize(

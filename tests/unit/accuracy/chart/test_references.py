@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.chart.references import exact_of
-from dembound.accuracy.of_bars.exact import PulseInBar
+from dembound.accuracy.of_bars.causes import PulseInBar
 from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactPlaneWave
 from dembound.disks.scene import build
 from dembound.errors import CaseError

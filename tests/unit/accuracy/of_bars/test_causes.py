@@ -9,7 +9,7 @@ from estimated_bars import RICKER, SCENES, dalembert, estimated, exact, recorded
 from small_cases import SPALLING, small
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.accuracy.of_bars.causes import NO_ECHO, NO_GRID, causes_of_bar
 from dembound.formulas.cause import SIDES, Causes
 from dembound.formulas.history import History

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from estimated_bars import dalembert, scene
 
-from dembound.accuracy.of_bars.exact import ExactMotion
+from dembound.accuracy.of_bars.causes import ExactMotion
 from dembound.bar.scene import build_bar
 from dembound.formulas.bars.rods import Window
 

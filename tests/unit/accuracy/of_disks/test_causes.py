@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
+from dembound.accuracy.of_disks.causes import Formulas, causes_of_run, ground_causes, rest_causes
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.sliding import settled_of
+from dembound.accuracy.of_disks.measured import settled_of
 from dembound.accuracy.runner import at_step, measure
 from dembound.disks.scene import DiskScene
 from dembound.formulas.cause import STEP
-from dembound.formulas.disks.formulas import Formulas
 from dembound.kinds import with_changes
 from dembound.running import Progress, plan
 

@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 from small_cases import small
 
-from dembound.accuracy.of_disks.cost import Counted, planned_cost
+from dembound.accuracy.of_disks.cost import MOST, Along, Counted, planned_cost
 from dembound.accuracy.of_disks.options import Options
-from dembound.accuracy.of_disks.steps import MOST, Along
 from dembound.running import plan
 
 ROCK = {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.advise import advise
-from dembound.accuracy.judges import judge_of
+from dembound.accuracy.estimate import advise
+from dembound.accuracy.judge import judge_of
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner, measure
 from dembound.casefile.disks import DiskCase

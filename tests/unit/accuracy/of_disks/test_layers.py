@@ -7,7 +7,8 @@ import pytest
 from small_cases import OPEN, SOIL, Tables, small
 
 from dembound.accuracy.estimate import causes_of
-from dembound.accuracy.judges import judge_of
+from dembound.accuracy.judge import judge_of
+from dembound.accuracy.of_disks.causes import Formulas
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.runner import measure
 from dembound.disks.material.layered import materials_in
@@ -15,7 +16,6 @@ from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.history import earlier
 from dembound.results.compare import relative_error

@@ -5,7 +5,7 @@ import pytest
 from small_cases import GRAINS, PUSHED, small
 
 from dembound.accuracy import runner
-from dembound.accuracy.of_disks.seeds import cause_of_packing
+from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.runner import Run
 from dembound.errors import CaseError
 from dembound.formulas.history import History

@@ -7,7 +7,7 @@ import pytest
 from small_cases import Tables, small
 from translated import translated
 
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.accuracy.of_disks.arrangements import _with_monitors, box_tables, boxes
 from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.exact import problem_of

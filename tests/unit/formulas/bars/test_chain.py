@@ -8,7 +8,7 @@ import pytest
 from estimated_bars import LAYER, scene
 
 from dembound.bar.scene import build_bar
-from dembound.exact.dispersion import Lattice
+from dembound.exact.bar import Lattice
 from dembound.formulas.bars.chain import Chain, Frequencies, Response
 from dembound.kinds import with_changes
 

@@ -5,8 +5,7 @@ import pytest
 from small_cases import small
 
 from dembound.disks.scene import build
-from dembound.formulas.disks.beside_wave import taken_from_waves
-from dembound.formulas.disks.coarse_grid import Grid, undisturbed
+from dembound.formulas.disks.beside_wave import Grid, taken_from_waves, undisturbed
 
 SPEED, PERIOD = 1000.0, 0.02
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.accuracy.of_disks.causes import Formulas
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.exact.column import Column, Layer
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.formulas import Formulas
 from dembound.formulas.history import History
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation

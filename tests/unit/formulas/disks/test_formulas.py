@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from small_cases import SURROUNDED, Tables, small
 
-from dembound.accuracy.of_disks.causes import causes_of_run
+from dembound.accuracy.of_disks.causes import Formulas, causes_of_run
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import build
 from dembound.formulas.cause import GRID, STEP
-from dembound.formulas.disks.driven_sides import reflected_motion
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.held_sides import reflected_motion
 from dembound.formulas.disks.reflections import Reflected
 from dembound.formulas.history import History
 from dembound.results.compare import relative_error

@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 from small_cases import Tables, small
 
+from dembound.accuracy.of_disks.causes import Formulas
 from dembound.disks.scene import build
 from dembound.formulas.cause import GRID, STEP
-from dembound.formulas.delays import part_above
-from dembound.formulas.disks.dispersion import Dispersion
-from dembound.formulas.disks.formulas import Formulas
-from dembound.formulas.disks.kinks import SLOW, causes_of_kinks
-from dembound.formulas.history import History
+from dembound.formulas.disks.dispersion import SLOW, Dispersion, causes_of_kinks
+from dembound.formulas.history import History, part_above
 
 SPEED, LARGER = 1000.0, 2.0
 COLUMN: Tables = {

@@ -5,7 +5,7 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.disks.scene import DiskScene, build
-from dembound.formulas.disks.near_loads import ALONG_RAY, CURVED, errors_near_loads
+from dembound.formulas.disks.near_disks import ALONG_RAY, CURVED, errors_near_loads
 from dembound.formulas.history import History
 
 RATE = 2.0 * np.pi * 20.0

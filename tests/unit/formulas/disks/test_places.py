@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, small
 
-from dembound.accuracy.judges import extended
+from dembound.accuracy.judge import extended
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.misplaced import errors_of_places
+from dembound.accuracy.of_disks.measured import errors_of_places
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import DiskScene, build
 from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, weights_at

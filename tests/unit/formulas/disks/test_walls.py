@@ -12,7 +12,7 @@ from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import build
 from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS
-from dembound.formulas.disks.walls import (
+from dembound.formulas.disks.near_disks import (
     BETWEEN,
     CREEP,
     DARK,

@@ -3,8 +3,8 @@
 import pytest
 
 from dembound.bar.scene import build_bar
-from dembound.exact.dispersion import cells_per_wavelength, courant_limit
-from dembound.kinds.bar.facts import bar_facts, cells_of_waves
+from dembound.exact.bar import cells_per_wavelength, courant_limit
+from dembound.kinds.bar.summary import bar_facts, cells_of_waves
 from dembound.running import plan
 
 

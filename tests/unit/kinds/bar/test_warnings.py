@@ -7,8 +7,8 @@ from small_cases import SPALLING, small
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.exact.bar import triangle_spall
-from dembound.kinds.bar.facts import cells_of_waves
 from dembound.kinds.bar.range_warnings import never_closing, range_warnings
+from dembound.kinds.bar.summary import cells_of_waves
 from dembound.kinds.bar.warnings import bar_warnings, ends_too_soon
 
 UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}

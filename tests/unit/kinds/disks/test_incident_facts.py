@@ -4,7 +4,7 @@ import pytest
 from small_cases import SURROUNDED, small
 
 from dembound.disks.scene import build
-from dembound.kinds.disks.incident_facts import incident_facts
+from dembound.kinds.disks.incident_wave import incident_facts
 
 BESIDE = {"name": "beside", "position": [-1.5, 3.5]}
 CASE = SURROUNDED | {

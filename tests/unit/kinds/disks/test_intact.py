@@ -7,7 +7,7 @@ from small_cases import GRAINS, small
 
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
-from dembound.kinds.disks.intact import creep, intact_facts, intact_warnings
+from dembound.kinds.disks.facts import creep, intact_facts, intact_warnings
 
 WEIGHT = {"name": "weight", "acceleration": [0.0, -9.81]}
 BOTTOM = {"type": "viscous_input", "wave_s": "pulse"}

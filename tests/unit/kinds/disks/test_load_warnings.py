@@ -5,7 +5,7 @@ from small_cases import small
 from warned_cases import GROUND
 
 from dembound.disks.scene import build
-from dembound.kinds.disks.load_warnings import load_warnings
+from dembound.kinds.disks.side_warnings import load_warnings
 
 
 def scene(side: dict, **place: list):
