@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
+from dembound.bar.part import BarPart
 from dembound.bar.scene import build_bar, entering_pressure
+from dembound.errors import CaseError
+from dembound.machine import Memory
+from dembound.motion import memory
+from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -89,3 +94,129 @@ def test_a_dashpot_takes_its_part_of_a_load_and_lets_its_wave_in(spalling, side,
     np.testing.assert_allclose(entering_pressure(case, side, TIME, loads=False), wave * SHAPE, rtol=1e-12, atol=1e-6)
     np.testing.assert_allclose(entering_pressure(case, side, TIME), (wave + load) * SHAPE, rtol=1e-12, atol=1e-6)
     assert entering_pressure(case, side, np.zeros((2, 3))).shape == (2, 3)
+
+
+NODES = {"left": 9, "right": 14}
+METHODS = {
+    "finite differences": {"type": "finite_difference"},
+    "peridynamics": {"type": "peridynamics", "horizon": 3},
+    "corrected ends": {"type": "peridynamics", "horizon": 3, "corrected_ends": True},
+}
+
+
+def ends(**keys) -> dict:
+    return {f"boundary.{side}": {"type": "matched_layer", "nodes": nodes} | keys for side, nodes in NODES.items()}
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_motion_without_decay_is_that_of_a_longer_bar(spalling, method: dict) -> None:
+    """Noise in the bar, until its waves have returned from the ends of the longer bar: five steps of three nodes.
+
+    To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer include the layer's
+    bonds, at the same step.
+    """
+    common = {"method": method, "bar.strength": 1e12, "load": []}
+    short = build_bar(spalling(common | ends(reflection=1.0 - 1e-15)))  # with which nothing decays
+    longer = build_bar(spalling(common | {"bar.length": 0.025 * (40 + sum(NODES.values()))}))
+    step, places = 0.5 * longer.step_limit(), np.array([1, 2, 38, 39])
+    noise = np.random.default_rng(2).standard_normal(short.count)
+    moved, stresses = [], []
+    for scene, first in ((short, 0), (longer, NODES["left"])):
+        simulation = Simulation(scene, step, places + first)
+        velocity = np.zeros((3, scene.count))
+        velocity[0, first : first + short.count] = noise
+        simulation.state.velocity = velocity
+        simulation.state.displacement = step * velocity  # from zero a step ago, as the bonds of a layer at rest
+        stresses.append(simulation.advance(4)[:, :, 6])
+        moved.append(simulation.state.displacement[0, first : first + short.count])
+    np.testing.assert_allclose(moved[0], moved[1], rtol=0.0, atol=60 * 2.3e-16 * np.abs(moved[1]).max())
+    np.testing.assert_allclose(stresses[0], stresses[1], rtol=0.0, atol=1e-12 * np.abs(stresses[1]).max())
+    assert np.abs(stresses[1]).max() > 0.0
+
+
+RANGES = [{"name": "striker", "length": 0.25, "velocity": 5.0}, {"name": "rock", "length": 0.75}]
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        (
+            {"method": {"type": "peridynamics", "horizon": 5}},
+            "boundary.left.nodes: is 9, must be at least 10, twice method.horizon",
+        ),
+        (
+            {"bar": {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": RANGES}},
+            "boundary.left.type: its layer is at rest, but range striker beside it has a velocity",
+        ),
+    ],
+    ids=["shorter than two horizons", "beside a moving range"],
+)
+def test_layers_that_cannot_be_are_refused(spalling, changes: dict, problem: str) -> None:
+    with pytest.raises(CaseError) as error:
+        spalling(changes | ends())
+    assert error.value.problems == [problem]
+
+
+def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
+    said = r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "
+    with pytest.raises(CaseError, match=said):
+        build_bar(spalling({"bar.spacing": 1e-6}))
+
+
+UNIT = 0.025 / 1000.0
+"""Δx/c, s."""
+ALL_METHODS = {
+    "finite_difference": {"type": "finite_difference"},
+    "peridynamics": {"type": "peridynamics", "horizon": 3},
+    "switch": {"type": "switch", "horizon": 3},
+    "patch": {"type": "patch", "horizon": 3, "reach": 1},
+}
+
+
+@pytest.fixture(params=ALL_METHODS.values(), ids=ALL_METHODS.keys())
+def method(request) -> dict:
+    return request.param
+
+
+@pytest.fixture
+def simulation(spalling):
+    """Makes simulations of the spalling bar at a Courant number."""
+
+    def make(courant: float = 0.9, probes: tuple[int, ...] = (), **changes: object) -> Simulation:
+        return Simulation(build_bar(spalling(changes)), courant * UNIT, np.array(probes, dtype=np.int64))
+
+    return make
+
+
+def part_of(simulation: Simulation) -> BarPart:
+    """The bar of a simulation, its only part."""
+    (part,) = simulation.system.parts
+    assert isinstance(part, BarPart)
+    return part
+
+
+def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(simulation, method: dict) -> None:
+    whole, run = (simulation(probes=(20, 35), method=method) for _ in range(2))
+    records, reported = [], []
+    record = whole.advance(5)
+    alive = {"peridynamics": 40 + 39 + 38}.get(method["type"], 40)
+    assert part_of(whole).bond_updates == 5 * alive  # what pulls
+    record = np.concatenate([record, whole.advance(65)])
+    for steps in (1, 9, 30, *30 * [1]):  # whatever step it is that ends a block
+        records.append(run.advance(steps))
+        reported.append(run.system.take_cracks(run.state.step))
+        assert run.state.step - steps <= reported[-1].step.min(initial=run.state.step - steps)
+        assert reported[-1].step.max(initial=0) < run.state.step
+    assert np.array_equal(np.concatenate(records), record)
+    assert np.array_equal(run.state.displacement, whole.state.displacement)
+    assert whole.state.laws == run.state.laws
+
+    assert len(run.system.take_cracks(run.state.step).step) == 0
+    steps, pairs = part_of(whole).bonds.breaks(0)
+    assert len(steps) > 0
+    assert np.array_equal(np.concatenate([cracks.step for cracks in reported]), steps)
+    assert np.array_equal(np.concatenate([cracks.pair for cracks in reported]), pairs)
+    for cracks in reported:
+        np.testing.assert_allclose(cracks.position[:, 0], 0.025 * cracks.pair.mean(axis=1), rtol=8 * EPS)
+        assert not cracks.shear.any()

@@ -4,16 +4,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_cases import PUSHED, small
+from small_cases import GRAINS, OPEN, PUSHED, SOIL, Tables, small
 
+from dembound.accuracy import runner
+from dembound.accuracy.estimate import causes_of
+from dembound.accuracy.judges import judge_of
 from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, rest_causes
+from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.companions import Companions
+from dembound.accuracy.of_disks.seeds import cause_of_packing
 from dembound.accuracy.of_disks.sliding import settled_of
-from dembound.accuracy.runner import at_step, measure
-from dembound.disks.scene import DiskScene
+from dembound.accuracy.runner import Run, at_step, measure
+from dembound.disks.material.layered import materials_in
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
 from dembound.formulas.cause import STEP
+from dembound.formulas.disks.entry import late_by
 from dembound.formulas.disks.formulas import Formulas
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.history import History, earlier
 from dembound.kinds import with_changes
+from dembound.results.compare import relative_error
 from dembound.running import Progress, plan
 
 LENGTH, SPEED = 30.0, 1000.0
@@ -149,3 +161,111 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
     assert settled_of(own) is not None
     assert not settled_of(own)["elastic"]
+
+
+COLUMN: Tables = SOIL | {
+    "packing": {
+        "pattern": "B",
+        "radius": 0.125,
+        "radius_ratio": 1.5,
+        "brick": [2.5, 2.5],
+        "seed": 3,
+        "size": [2.5, 12.5],
+    },
+    "wave": {"in": SOIL["wave"]["in"] | {"frequency": 10.0}},
+    "monitor": [{"name": "top", "position": [1.25, 12.5]}, {"name": "sand", "position": [1.25, 5.0]}],
+}
+"""Random disks in long waves."""
+
+LATTICE: Tables = SOIL | {
+    "boundary": SOIL["boundary"] | {"bottom": SOIL["boundary"]["bottom"] | {"half_mass": True}},
+}
+"""Short waves without reflections at the bottom: errors are those of the disks."""
+
+
+def test_estimates_of_a_column_are_near_its_errors_beside_the_exact_motion() -> None:
+    case, within = small(LATTICE), 1.5
+    scene = build(case)
+    step = choose_step(scene)[0]
+    run = measure(case, Progress())[0]
+    recorded = {
+        name: replace(own, values={quantity: values[:, :2] for quantity, values in own.values.items()})
+        for name, own in run.motions.items()
+    }
+    moved = earlier(recorded, late_by(scene))
+    solution = judge_of(case).exact(case)
+    exact = solution.motions(case, moved)
+    causes = [each for each in causes_of(case, recorded, step, 1e9).found if each.name != "places"]
+    for name, own in moved.items():
+        error = relative_error(own.velocity[:, 0] - exact[name].velocity[:, 0], exact[name].velocity[:, 0])
+        assert 1e-3 < error < 0.05
+        size = np.linalg.norm(own.velocity[:, 0])
+        parts = [float(np.linalg.norm(each.parts[name]["velocity"][:, 0]) / size) for each in causes]
+        assert error / within < np.linalg.norm(parts) < within * error
+
+
+def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them() -> None:
+    scene = build(small(COLUMN))
+    larger = coarser(scene.case, scene, 1e-4, 0.6).case
+    stretch = larger.size[1] / 12.5
+    assert larger.joints == pytest.approx([8.5 * stretch, 4.0 * stretch])
+    for own, made in zip(materials_in(scene.ground), materials_in(build(larger).ground), strict=True):
+        assert made.density == own.density
+        np.testing.assert_allclose(made.wave_speeds(1), own.wave_speeds(1), rtol=1e-3)  # P and S are not quite apart
+    # layers of whole cells of the largest disks
+    thin = small(COLUMN, changes={"layer.sand.thickness": 0.75, "run.duration": 0.01})
+    assert coarser(thin, build(thin), 1e-4, 0.3).case.joints[0] == pytest.approx(8.5)
+
+
+def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
+    scene = build(small(LATTICE | OPEN))
+    alone = {}
+    for number, height in enumerate((10.0, 6.0, 1.0)):
+        one = scene.case.uniform_at(height)
+        alone[number] = Reflections().of(build(one), "left", 1e-4)["s"].size
+    shares = np.array([4.0, 4.5, 4.0]) / 12.5
+    mean = np.sqrt(shares @ np.square(list(alone.values())))
+    # disks of 0.25 m, of which layers have whole numbers
+    assert Reflections().of(scene, "left", 1e-4)["s"].size == pytest.approx(mean, rel=1e-6)
+    assert min(alone.values()) < 0.9 * mean
+
+
+def test_what_is_known_of_uniform_ground_alone_is_not_used() -> None:
+    held = COLUMN["boundary"] | {"bottom": {"type": "velocity", "wave_s": "in"}}
+    scene = build(small(LATTICE | {"boundary": held}))
+    motions = {}
+    (side,) = Formulas(scene, 1e-4).held_sides.causes(motions)
+    assert side.how == "unknown"
+    jumping = small(LATTICE, changes={"wave.in": {"type": "constant", "amplitude": 1.0, "start": 0.1}})
+    with pytest.raises(CaseError, match="continuous"):
+        judge_of(jumping).exact(jumping)
+    assert judge_of(scene.case).exact(replace(scene.case, layer=())) is None
+
+
+TIME = np.linspace(0.0, 1.0, 21)
+
+
+def test_runs_with_several_seeds_scatter_about_their_mean_and_lattices_have_none(monkeypatch):
+    case = small(GRAINS, changes={"packing.seed": 7, "run.until": "silent"})
+    seen = []
+
+    def other(given, *_, **__):
+        seen.append(given)
+        motion = given.packing.seed * np.outer(TIME, [1.0, 2.0, 9.0])
+        return Run(work=300, motions={"top": History.of(np.zeros(2), TIME, motion, 3.0 * motion)}), 0.0, 0.0
+
+    monkeypatch.setattr(runner, "measure", other)
+    times = np.array([0.0, 0.13, 0.7])
+    motion = {"velocity": np.zeros((3, 2)), "displacement": np.zeros((3, 2))}
+    (cause,) = cause_of_packing(case, {"top": History(np.zeros(2), times, motion)}, 3).found
+    assert [each.packing.seed for each in seen] == [7, 8, 9]
+    assert all(each.run.until != "silent" for each in seen)  # they must not end before the record
+    # the first is one less than the mean of 7, 8 and 9; of three runs it is nearer to their own mean by √(2/3)
+    np.testing.assert_allclose(cause.parts["top"]["displacement"], -np.outer(times, [1.0, 2.0]) * 1.5**0.5, atol=1e-12)
+    np.testing.assert_allclose(
+        cause.parts["top"]["velocity"], -3.0 * np.outer(times, [1.0, 2.0]) * 1.5**0.5, atol=1e-12
+    )
+    assert cause.is_sample
+    assert cause.of_disks
+    with pytest.raises(CaseError, match="no random packing"):
+        cause_of_packing(small(PUSHED), {}, 2)

@@ -1,11 +1,16 @@
 """Probable mistakes in a case of disks: loads, stages, holes, factors and speeds."""
 
+from typing import Any
+
 import numpy as np
 import pytest
-from small_cases import small
-from warned_cases import DENSE, SLOW, warned
+from small_cases import GRAINS, small
+from warned_cases import DENSE, GROUND, SLOW, warned
 
-from dembound.disks.scene import build
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
+from dembound.kinds.disks.intact import creep, intact_facts, intact_warnings
+from dembound.kinds.disks.load_warnings import load_warnings
 from dembound.kinds.disks.micro_macro import materials_of
 from dembound.kinds.disks.warnings import _s_speed_of_the_packing
 
@@ -130,3 +135,123 @@ def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
         static = {"static": {"stress": [-1e5, -1e5, 0.0]}}
         lines = warned(bar({"packing.size": [10.0, 1.0], "hole": each, **static}))
         assert [line for line in lines if line.startswith("hole")] == said
+
+
+def struck(side: dict, **place: list):
+    blow = {"name": "blow", "force": [3e5, -1e5], "wave": "blow", **place}
+    return build(small(GROUND, changes={"boundary": {"left": side}, "load": [blow]}))
+
+
+@pytest.mark.parametrize(
+    ("side", "place", "said"),
+    [
+        ("viscous", {"position": [0.5, 5.5]}, "acts on disks of boundary.left alone, whose dashpots take a part of it"),
+        ("free", {"position": [0.5, 5.5]}, None),
+        ("fixed", {"region": [0.0, 0.0, 4.0, 10.0]}, "has 25 % of its force along x"),
+        ("fixed", {"region": [0.0, 0.0, 20.0, 10.0]}, None),
+    ],
+)
+def test_a_load_on_disks_of_a_side_is_warned_of(side: str, place: dict, said: str | None) -> None:
+    found = list(load_warnings(struck({"type": side}, **place)))
+    assert len(found) == (said is not None)
+    assert said is None or said in found[0]
+
+
+@pytest.mark.parametrize(
+    ("pull", "sides", "said"),
+    [
+        (9.81, ["left"], "static: the steady loads pull the body along x towards its right, which is free"),
+        (-9.81, ["left"], ""),
+        (-9.81, ["right"], "static: the steady loads pull the body along x towards its left, which is free"),
+    ],
+)
+def test_a_body_that_hangs_while_it_settles_is_warned_of(pull: float, sides: list[str], said: str) -> None:
+    held = {side: {"type": "fixed"} for side in sides}
+    tables = {"load": [{"name": "weight", "acceleration": [pull, 0.0]}], "static": {"ratio": 1e-6, "boundary": held}}
+    found = [line for line in load_warnings(build(small(GROUND | {"wave": {}} | tables))) if line.startswith("static:")]
+    assert [line[: len(said)] for line in found] == ([said] if said else [])
+
+
+WEIGHT = {"name": "weight", "acceleration": [0.0, -9.81]}
+BOTTOM = {"type": "viscous_input", "wave_s": "pulse"}
+VISCOUS = {side: {"type": "viscous"} for side in ("left", "right")}
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+HELD = {"bottom": {"type": "fixed"}, "left": {"type": "roller"}, "right": {"type": "roller"}}
+PUSH = {"name": "push", "force": [3e4, -4e4], "region": [2.0, 2.0, 6.0, 4.0], "wave": "on"}
+WAVES = GRAINS["wave"] | {"on": {"type": "constant", "amplitude": 0.5, "rise": 0.01}}
+
+
+def breaking(boundary: dict[str, Any], **tables: object) -> DiskScene:
+    material = GRAINS["material"] | {"law": "linearpbond", "pb_ten": 1e6}
+    ground = {"material": material, "load": [WEIGHT], "static": {"boundary": HELD}, "boundary": boundary}
+    return build(small(GRAINS | ground | tables))  # type: ignore[arg-type]
+
+
+def test_zones_and_springs_are_among_the_facts() -> None:
+    body = breaking(FREE_FIELD | {"bottom": BOTTOM})
+    facts = dict(intact_facts(body))
+    inside = len(set().union(*(set(nodes.tolist()) for nodes in body.intact_zones.values())))
+    own = body.disk_count - body.column_count
+    assert facts["bonds kept"] == (
+        f"2 disks from left and right and bottom: {inside:,} of {own:,} disks have bonds that do not break; all of the "
+        "free-field column"
+    )
+    # a tenth of the weight over α_n G ΣD/L of the bottom
+    weight = -float(body.steady_load[1, body.column_count :].sum())
+    sag = 1e6 * 0.1 * weight / float(body.bearing.stiffness[:, 1].sum())
+    assert facts["bottom springs"].startswith("α_n 1 and α_s 0.5, on the motion relative to the free-field column; ")
+    assert f"sags by {sag:.3g} µm" in facts["bottom springs"]
+    assert "they bear no net force" in dict(intact_facts(breaking(VISCOUS | {"bottom": BOTTOM})))["bottom springs"]
+    assert dict(intact_facts(breaking(VISCOUS | {"bottom": BOTTOM | {"intact": 0}}))).keys() == {"bonds kept"}
+
+
+def test_sides_without_a_zone_are_warned_of_where_forces_at_rest_act() -> None:
+    ground = FREE_FIELD | {"bottom": BOTTOM | {"intact": 0}}
+    said, drifts = intact_warnings(breaking(ground))
+    assert drifts.startswith("boundary: dashpots alone bear this ground")  # as there are no springs either
+    assert said.startswith("boundary.bottom.intact: is 0, but forces of the static stage go on acting there")
+    tough = GRAINS["material"] | {"law": "linearpbond"}
+    assert list(intact_warnings(breaking(ground, material=tough))) == []
+
+
+def test_a_load_that_lasts_creeps_on_dashpots_and_the_weight_that_leaves_too() -> None:
+    body = breaking(VISCOUS | {"bottom": BOTTOM}, load=[WEIGHT, PUSH], wave=WAVES)
+    rates = [creep(body, axis) for axis in (0, 1)]
+    supports = body.supports
+    for axis, rate in enumerate(rates):
+        assert rate == pytest.approx(1.0 / supports.damping[supports.component == axis].sum())
+    weight, *lasting = intact_warnings(body)
+    assert weight.startswith("boundary: dashpots alone bear this ground")
+    for axis, said in enumerate(lasting):
+        force = (1.5e4, 2e4)[axis]
+        assert said.startswith(f"load.push: lasts until the end of the run, {force / 1e3:g} kN along {'xy'[axis]}")
+        assert f"the body creeps at {1e6 * force * rates[axis]:.4g} µm/s" in said
+    assert len(lasting) == 2
+
+
+FOUND = {
+    "work": {"size": 0.06, "side": "left", "time": 0.5},
+    "turn": {"size": 0.2, "side": "right", "time": 0.25},
+    "ended": 0.2,
+    "reached": {"left": {"bonds": 1200, "time": 0.125}, "free-field column": {"bonds": 1, "time": 0.5}},
+}
+
+
+def test_forces_at_rest_that_became_a_motor_are_warned_of() -> None:
+    work, turn, ended = lasting_force_warnings(FOUND)
+    assert work.startswith("boundary.left: until t = 0.5 s forces at rest have done 6 % of the energy")
+    assert turn.startswith("boundary.right: a disk on which forces at rest act has turned by 0.2 rad by t = 0.25 s")
+    assert ended.startswith("static: disks that bore 20 % of the forces at rest have broken off")
+    quiet = {"work": {**FOUND["work"], "size": 0.05}, "turn": {**FOUND["turn"], "size": 0.15}, "ended": 0.1}
+    assert list(lasting_force_warnings(quiet)) == []
+    assert list(lasting_force_warnings({"work": None, "turn": None, "ended": 0.0})) == []
+    assert list(lasting_force_warnings(None)) == []
+
+
+def test_sides_that_cracks_would_have_reached_are_named_in_one_line() -> None:
+    (said,) = reach_warnings(FOUND)
+    assert said.startswith(
+        "boundary.left: cracks would have reached the left side (at least 1,200 bonds, from t = 0.125 s), "
+        "the free-field column (at least 1 bond, from t = 0.5 s), whose bonds do not break"
+    )
+    assert list(reach_warnings(None)) == list(reach_warnings({"reached": {}})) == []
