@@ -88,28 +88,6 @@ def test_laplace_transform_is_the_solution_in_wave_numbers(s_speed: float) -> No
     assert transform == pytest.approx(expected, rel=1e-6, abs=0.0)
 
 
-ONCE = np.array([0.1])
-
-
-@pytest.mark.parametrize(
-    ("make", "given", "said"),
-    [
-        (rayleigh_speed, (100.0, 100.0), "speeds must be"),
-        (surface_displacement, (ONCE, 1.0, splines, 2500.0, 300.0, 0.0), "speeds must be"),
-        (surface_displacement, (ONCE, 0.0, splines, 2500.0, 300.0, 100.0), "must be positive"),
-        (surface_displacement, (ONCE, 1.0, splines, -1.0, 300.0, 100.0), "must be positive"),
-        (buried_displacement, (ONCE, 0.0, 1.0, decaying, SOLIDS[0]), "must be positive"),
-        (buried_displacement, (ONCE, 1.0, 0.0, decaying, SOLIDS[0]), "must be positive"),
-        (moved, (ONCE, 1.0, 0.0, SOLIDS[0], 0.0), "depths must be"),
-        (moved, (ONCE, 1.0, -1.0, SOLIDS[0]), "depths must be"),
-        (moved, (ONCE, 0.0, DEPTH, SOLIDS[0]), "at the source"),
-    ],
-)
-def test_what_is_not_a_half_space_is_refused(make, given: tuple, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        make(*given)
-
-
 def test_a_source_that_jumps_does_not_converge() -> None:
     with pytest.raises(RuntimeError, match="did not converge"):
         buried_explosion(np.array([0.5]), 3.0, 0.0, DEPTH, lambda t: 1.0 * (t < 0.1), SOLIDS[0], 1e-14)
@@ -226,3 +204,25 @@ def test_before_echoes_it_is_the_cavity_with_the_same_moment() -> None:
         found = buried_explosion(times + advance, *place, deep, signal, solid, 1e-5)
         # linear interpolation over 60 µs of a pulse of 10 ms errs by (2π·60e-6/0.01)²/8 = 2e-4
         np.testing.assert_allclose(found, direction[:, None] * history, rtol=0.0, atol=5e-4 * np.abs(history).max())
+
+
+ONCE = np.array([0.1])
+
+
+@pytest.mark.parametrize(
+    ("make", "given", "said"),
+    [
+        (rayleigh_speed, (100.0, 100.0), "speeds must be"),
+        (surface_displacement, (ONCE, 1.0, splines, 2500.0, 300.0, 0.0), "speeds must be"),
+        (surface_displacement, (ONCE, 0.0, splines, 2500.0, 300.0, 100.0), "must be positive"),
+        (surface_displacement, (ONCE, 1.0, splines, -1.0, 300.0, 100.0), "must be positive"),
+        (buried_displacement, (ONCE, 0.0, 1.0, decaying, SOLIDS[0]), "must be positive"),
+        (buried_displacement, (ONCE, 1.0, 0.0, decaying, SOLIDS[0]), "must be positive"),
+        (moved, (ONCE, 1.0, 0.0, SOLIDS[0], 0.0), "depths must be"),
+        (moved, (ONCE, 1.0, -1.0, SOLIDS[0]), "depths must be"),
+        (moved, (ONCE, 0.0, DEPTH, SOLIDS[0]), "at the source"),
+    ],
+)
+def test_what_is_not_a_half_space_is_refused(make, given: tuple, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        make(*given)

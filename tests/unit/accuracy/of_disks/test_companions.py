@@ -5,7 +5,8 @@ from typing import ClassVar, Literal
 
 import numpy as np
 import pytest
-from small_cases import Tables, small
+from scene_tables import ISOTROPIC, grains, lattice, monitors, point, pulse
+from small_cases import Tables, around, small
 
 from dembound.accuracy.of_disks import enlarged as pairs
 from dembound.accuracy.of_disks.coarser import coarser, largest_diameter
@@ -22,8 +23,8 @@ from dembound.errors import CaseError
 STEP = 1e-4
 
 GROUND: Tables = {
-    "packing": {"pattern": "A", "size": [24.0, 12.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+    "packing": lattice(24.0, 12.0, 0.5),
+    "material": ISOTROPIC,
     "boundary": {
         "right": {"type": "viscous", "beta_p": 0.6, "beta_s": 1.5},
         "bottom": {"type": "viscoelastic", "source": [5.0, 9.0], "alpha_n": 2.0, "alpha_s": 0.5},
@@ -34,11 +35,13 @@ GROUND: Tables = {
         {"name": "hammer", "force": [3.0, -7.0], "position": [5.25, 9.25], "wave": "pulse"},
         {"name": "push", "acceleration": [2.0, 1.0], "region": [8.0, 2.0, 9.0, 5.0], "wave": "pulse"},
     ],
-    "monitor": [{"name": "top", "position": [20.25, 11.75]}],
+    "monitor": monitors(top=(20.25, 11.75)),
     "run": {"duration": 0.02},
     "output": {"pictures": False, "snapshots": 3},
 }
 """A lattice of 48 × 24 disks that is wider than high, with a hole, two loads and two kinds of sides."""
+
+GRAINS, EMPTY = grains(24.0, 12.0, 0.5, 6.0), {"hole": [], "load": []}
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +57,7 @@ def test_the_ground_is_as_large_within_half_a_cell_and_its_disks_as_large_as_ask
     assert 2.0 * larger.case.packing.radius == pytest.approx(1.5)
     assert larger.case.output.snapshots == 0
     # heights that no whole cells fill
-    case = small(GROUND, changes={"packing.size": [24.0, 7.0], "hole": [], "load": [], "monitor": []})
+    case = small(GROUND, changes={"packing.size": [24.0, 7.0], "monitor": []} | EMPTY)
     larger = coarser(case, build(case), STEP, 1.5).case
     assert larger.packing.extent[0] == pytest.approx(24.0)
     assert abs(larger.packing.extent[1] - 7.0) < 0.5 * 1.5
@@ -86,9 +89,8 @@ def test_dashpots_are_as_much_too_soft_or_too_hard_as_those_of_the_case(both):
 
 def test_springs_on_a_random_packing_are_as_stiff_per_length():
     # αGΣD/(HL) of both, of which ΣD/H is another one for random disks; G is that of the dashpots' medium
-    packing = GROUND["packing"] | {"pattern": "B", "radius_ratio": 1.5, "brick": [6.0, 6.0], "seed": 1}
     side = {"type": "viscoelastic", "distance": 10.0, "alpha_n": 2.0}
-    case = small(GROUND, changes={"packing": packing, "boundary": {"right": side}, "hole": [], "load": []})
+    case = small(GROUND, changes={"packing": GRAINS, "boundary": {"right": side}} | EMPTY)
     finer = build(case)
     larger = build(coarser(case, finer, STEP, 1.5).case)
     assert abs(finer.edges["right"].diameter_sum_ratio - 1.0) > 0.05
@@ -97,8 +99,8 @@ def test_springs_on_a_random_packing_are_as_stiff_per_length():
 
 def test_cells_whose_mass_matters_are_whole_in_a_third_case():
     # with matched dashpots all that a side of whole cells reflects is out of phase, tan(qD/4) and three times of that
-    changes = {"boundary": {"right": {"type": "viscous"}}, "hole": [], "load": []}
-    case = small(GROUND | {"boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}}, changes=changes)
+    driven = GROUND | {"boundary": {"left": {"type": "velocity", "wave_p": "pulse"}}}
+    case = small(driven, changes={"boundary": around("viscous", "right")} | EMPTY)
     found = coarser(case, build(case), STEP, 1.5)
     assert found.weight == pytest.approx(1.0 / 3.0, rel=0.05)
     assert found.case.side("right").half_mass
@@ -106,8 +108,7 @@ def test_cells_whose_mass_matters_are_whole_in_a_third_case():
 
 
 def test_random_packings_become_lattices_with_their_wave_speeds():
-    packing = GROUND["packing"] | {"pattern": "B", "radius_ratio": 1.5, "brick": [6.0, 6.0], "seed": 1}
-    case = small(GROUND, changes={"packing": packing, "boundary": {}})
+    case = small(GROUND, changes={"packing": GRAINS, "boundary": {}})
     finer = build(case)
     scene = build(coarser(case, finer, STEP, 1.5).case)
     assert scene.case.packing.pattern == "A"
@@ -125,12 +126,12 @@ def test_disks_are_small_enough_for_holes_and_the_scene():
 
 
 SCENE: Tables = {
-    "packing": {"pattern": "A", "size": [12.0, 6.0], "radius": 0.125},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
-    "boundary": {"right": {"type": "viscous"}, "left": {"type": "viscous"}},
-    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.02}},
-    "load": [{"name": "hammer", "force": [1e5, 0.0], "position": [8.875, 3.125], "wave": "pulse"}],
-    "monitor": [{"name": "near", "position": [10.875, 3.125]}],
+    "packing": lattice(12.0, 6.0, 0.25),
+    "material": ISOTROPIC,
+    "boundary": around("viscous", "left", "right"),
+    "wave": pulse(0.02, 1.0),
+    "load": [point((1e5, 0.0), (8.875, 3.125))],
+    "monitor": monitors(near=(10.875, 3.125)),
     "run": {"duration": 0.03},
     "output": {"pictures": False},
 }
@@ -177,13 +178,7 @@ def test_pairs_that_cannot_be_run_are_refused(scene):
         pair_of(case, build(case), 1e-5, 1e9)
 
 
-RANDOM: Tables = {
-    "packing": {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0], "seed": 1, "bricks": [2, 1]},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
-    "boundary": {},
-    "run": {"duration": 0.02},
-    "output": {"pictures": False},
-}
+RANDOM: Tables = {"packing": grains(10.0, 5.0, 0.5, 5.0), "material": ISOTROPIC, "run": {"duration": 0.02}}
 
 
 class Own(Boundary):
