@@ -34,10 +34,6 @@ BAR = PUSHED | {
 RETURNED = (1.0 - 0.6) / (1.0 + 0.6)
 
 
-def bar() -> DiskCase:
-    return small(BAR)
-
-
 def exact(case: DiskCase, gauges: Motions, name: str) -> np.ndarray:
     """The velocity of a plane wave from the first disk of a case, at requested places."""
     way = {"near": 3.75, "back": 24.75}[name] - case.packing.radius
@@ -53,7 +49,7 @@ def true_error(case: Any) -> float:
 
 
 def test_the_choice_is_as_accurate_as_asked_for_where_the_case_is_not() -> None:
-    case = bar()
+    case = small(BAR)
     assert true_error(case) > 0.9 * RETURNED / 2**0.5  # the echo comes back to one monitor in full
     choice = advised(case, 0.02)
     assert choice.holds
@@ -66,7 +62,7 @@ def test_the_choice_is_as_accurate_as_asked_for_where_the_case_is_not() -> None:
 
 
 def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None:
-    case = bar()
+    case = small(BAR)
     choice = advised(case, 0.01, ["boundary", "packing"])
     assert not choice.holds
     assert choice.upper > 0.01
@@ -102,20 +98,20 @@ def test_where_bonds_break_the_error_is_that_before() -> None:
 
 
 def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken() -> None:
-    taken = advised(bar(), 0.6)
+    taken = advised(small(BAR), 0.6)
     assert taken.holds
     assert taken.choice.toml == []
     assert taken.tried == 1
-    several = advise(bar(), (0.6, 0.5))  # larger disks cost less
+    several = advise(small(BAR), (0.6, 0.5))  # larger disks cost less
     assert several.best[0.6].choice.changes
     assert several.best[0.6].cost < taken.cost
-    of_these = advise(bar(), (0.6, 0.5), of="disks")  # of others the truth would be another one
+    of_these = advise(small(BAR), (0.6, 0.5), of="disks")  # of others the truth would be another one
     assert of_these.best[0.6].case.packing.radius == 0.25
 
 
 def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_given_case(monkeypatch) -> None:
     monkeypatch.setattr(candidates, "LONGEST", 0.0)
-    choice = advised(bar(), 0.1)  # larger disks alone do not err so much
+    choice = advised(small(BAR), 0.1)  # larger disks alone do not err so much
     assert choice.words == "as in the case; the search ended early: it may take 8 s, or 20 % of the run or of --longest"
     assert choice.cost == choice.own_cost
     assert choice.tried == 1
@@ -124,10 +120,7 @@ def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_giv
 def test_what_cannot_be_chosen_for_is_refused() -> None:
     shake = {"name": "shake", "acceleration": [1.0, 0.0], "wave": "push"}
     steady = {"name": "foot", "force": [1.0, 0.0], "region": [5.0, 1.0, 6.0, 1.5]}
-    shaken = {key: value for key, value in BAR.items() if key != "boundary"} | {
-        "boundary": {"right": {"type": "viscous"}},
-        "load": [shake, steady],
-    }
+    shaken = BAR | {"boundary": {"right": {"type": "viscous"}}, "load": [shake, steady]}
     # to 24.5 m waves of 1,000 m/s take 24.5 ms; what runs ahead of them has faded after a few disks
     short = {"run": {"duration": 0.01}, "monitor": [{"name": "back", "position": [24.75, 0.75]}]}
     late = {"run": {"duration": 0.04}, "wave": {"push": BAR["wave"]["push"] | {"start": 0.05}}}
@@ -143,14 +136,7 @@ def test_what_cannot_be_chosen_for_is_refused() -> None:
             advise(small(tables), (bound,), kept=kept)
 
 
-LONG_BAR: dict[str, Any] = PUSHED | {
-    "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
-    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}},
-    "motion": {"held": ["y", "rotation"]},
-    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.03}},
-    "monitor": [{"name": "near", "position": [3.75, 0.75]}, {"name": "back", "position": [24.75, 0.75]}],
-    "run": {"duration": 0.4},
-}
+LONG_BAR = BAR | {"boundary": BAR["boundary"] | {"right": {"type": "viscous"}}, "run": {"duration": 0.4}}
 """A wave of 0.03 s that comes to the farther monitor after 0.0245 s, and has passed it at 0.0545 s."""
 
 PASSED, ECHO = 0.0245 + 0.03, 2.0 * 26.25 / 1000.0
@@ -215,13 +201,10 @@ def test_a_choice_keeps_its_bound_with_the_end() -> None:
 def test_sides_add_nothing_to_what_is_not_recorded() -> None:
     """Half of the late motion is reflected; a run that ends before it has only the error of the lost true motion."""
     case, true = small(LONG_BAR), passing(2e-4)
-    sent = {
-        name: {q: values - passing()[name].values[q] for q, values in own.values.items()} for name, own in true.items()
-    }
-    own = {
-        name: replace(each, values={q: values + sent[name][q] for q, values in each.values.items()})
-        for name, each in true.items()
-    }
+    sent, own, early = {}, {}, passing()
+    for name, each in true.items():
+        sent[name] = {q: values - early[name].values[q] for q, values in each.values.items()}
+        own[name] = replace(each, values={q: values + sent[name][q] for q, values in each.values.items()})
     (end,) = earlier_ends(case, own, 0.01, [])
     both = Budget(true, Causes([Cause("sides", "", sent), end.lost]))
     lost = true["back"].values["velocity"][true["back"].time >= 0.3]

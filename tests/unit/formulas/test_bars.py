@@ -12,7 +12,6 @@ from dembound.bar.layers import EndLayer
 from dembound.bar.scene import build_bar
 from dembound.boundaries.boundary import Layer
 from dembound.exact import Lattice
-from dembound.exact.dispersion import Lattice
 from dembound.formulas.bars.chain import Chain, Frequencies, Response
 from dembound.formulas.bars.ends import returned
 from dembound.formulas.bars.rods import Rods, Window

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from small_cases import around
 
 from dembound.formulas.delays import error_of_delay, error_of_steps
 from dembound.formulas.first_echoes import echoes
@@ -106,13 +107,9 @@ LONG = {
     "monitor": [{"name": "near", "position": [20.25, 0.75]}, {"name": "far", "position": [90.25, 0.75]}],
 }
 BLOW = {"name": "blow", "force": [1e5, 0.0], "position": [30.25, 30.25], "wave": "pulse"}
-COLUMN = {
-    "packing.size": [60.0, 60.0],
-    "motion.held": [],
-    "boundary": {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": {"type": "viscous"}},
+COLUMN = {"packing.size": [60.0, 60.0], "motion.held": [], "load": [BLOW], "run.duration": 0.2} | {
+    "boundary": around("free_field", "left", "right") | around("viscous", "bottom"),
     "monitor": [{"name": "P", "position": [40.25, 30.25]}],
-    "load": [BLOW],
-    "run.duration": 0.2,
 }
 
 
@@ -132,10 +129,8 @@ def test_the_first_monitor_that_an_echo_comes_to_is_named(bar) -> None:
 def test_columns_send_back_the_waves_of_local_sources_only(bar) -> None:
     # over the right side 29.75 + 19.75 m, over the left one 30.25 + 40.25 m, over the bottom 30.25 m twice, 10 m apart
     found = lines(bar(COLUMN))["echoes"].split("; ")
-    assert [text.split(" from ")[0] for text in found] == [
-        f"{side} ({kind}) may reflect to P"
-        for side, kind in (("left", "free_field"), ("right", "free_field"), ("bottom", "viscous"))
-    ]
+    sides = ("left (free_field)", "right (free_field)", "bottom (viscous)")
+    assert [text.split(" from ")[0] for text in found] == [f"{side} may reflect to P" for side in sides]
     times = [float(text.split(" from ")[1].split(" s")[0]) for text in found]
     for time, way in zip(times, (70.5, 49.5, 61.3), strict=True):
         assert 0.9 * way < 1000.0 * time <= way

@@ -173,12 +173,12 @@ def test_kernel_forces_are_those_of_single_pairs():
     assert not forces.any()
 
 
-BOX = np.array([10.0, 6.0])
+WIDE = np.array([10.0, 6.0])
 
 
 def test_wrap_never_returns_the_far_face():
     positions = np.array([[-1e-17, 6.0], [10.0, -0.5], [25.0, 3.0]])
-    assert wrap(positions, BOX).tolist() == [[0.0, 0.0], [0.0, 5.5], [5.0, 3.0]]
+    assert wrap(positions, WIDE).tolist() == [[0.0, 0.0], [0.0, 5.5], [5.0, 3.0]]
 
 
 def test_strips_run_upwards_one_after_the_other():

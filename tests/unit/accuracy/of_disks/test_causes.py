@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_cases import GRAINS, OPEN, PUSHED, SOIL, Tables, small
+from plane_motion import in_plane, recorded
+from scene_tables import grains, monitors
+from small_cases import GRAINS, OPEN, PUSHED, SOIL, Tables, around, small
 
 from dembound.accuracy import runner
 from dembound.accuracy.estimate import causes_of
@@ -92,13 +94,12 @@ def test_waves_of_a_load_come_back_early_from_disks_that_are_held() -> None:
         "run": {"duration": 0.1},
     }
     coarse, fine = (small(tables, changes={"packing.radius": radius}) for radius in (0.5, 0.5 / 3))
-    own, finer = (measure(case, Progress())[0].motions["m"] for case in (coarse, fine))
-    own = replace(own, values={q: own.values[q][:, :2] for q in ("velocity", "displacement")})
+    own, finer = (recorded(case)["m"] for case in (coarse, fine))
     causes = causes_of_run(coarse, {"m": own}, 1e-4, 1e6, 1e7)
     (found,) = [each for each in causes.found if each.name == "bottom side"]
     assert found.of_disks
     for quantity, values in own.values.items():
-        difference = (values - finer.at(own.time).values[quantity][:, :2])[:, 1]
+        difference = (values - finer.at(own.time).values[quantity])[:, 1]
         expected = 2.0 / 3.0 * np.asarray(found.parts["m"][quantity])[:, 1]
         assert np.linalg.norm(difference - expected) < 0.35 * np.linalg.norm(difference)
 
@@ -107,11 +108,7 @@ GRAVEL = PUSHED | {
     "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
     "material": {"density": 2000.0, "p_wave_speed": 400.0, "law": "linearpbond", "fric": 0.3},
     "static": {"ratio": 1e-6, "boundary": {"bottom": {"type": "fixed"}}},
-    "boundary": {
-        "bottom": {"type": "velocity", "wave_s": "shake"},
-        "left": {"type": "periodic"},
-        "right": {"type": "periodic"},
-    },
+    "boundary": around("periodic", "left", "right") | {"bottom": {"type": "velocity", "wave_s": "shake"}},
     "wave": {"shake": {"type": "cosine", "amplitude": 0.2, "period": 0.1}},
     "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
     "monitor": [{"name": "top", "position": [5.0, 4.75]}],
@@ -122,7 +119,7 @@ GRAVEL = PUSHED | {
 SHEARED = GRAVEL | {
     "material": GRAVEL["material"] | {"fric": 0.2, "pb_ten": 1e9, "pb_coh": 1e9},
     "static": {"stress": [-1e5, -1e5, 4e4]},
-    "boundary": {"bottom": {"type": "viscous"}, "left": {"type": "viscous"}, "right": {"type": "viscous"}},
+    "boundary": around("viscous"),
     "load": [{"name": "hit", "force": [0.0, 1e3], "region": [4.0, 2.0, 6.0, 3.0], "wave": "shake"}],
     "run": {"duration": 0.05},
 }
@@ -135,18 +132,17 @@ def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     step = plan(case).time_step
     run, fine = (measure(at_step(case, step / n), Progress())[0] for n in (1, 8))
     assert run.laws == ("elastic", "linearpbond")
-    recorded = {
-        name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in run.motions.items()
-    }
-    found = next(cause for cause in causes_of_run(case, recorded, step, run.work, 1e9).found if cause.name == STEP)
+    motions = in_plane(run.motions)
+    found = next(cause for cause in causes_of_run(case, motions, step, run.work, 1e9).found if cause.name == STEP)
     assert (found.how, found.is_sample) == ("companion", True)
 
-    own = recorded["top"].velocity[:, 0]
-    true = np.linalg.norm(own - fine.motions["top"].at(recorded["top"].time).velocity[:, 0]) / np.linalg.norm(own)
+    top = motions["top"]
+    own = top.velocity[:, 0]
+    true = np.linalg.norm(own - fine.motions["top"].at(top.time).velocity[:, 0]) / np.linalg.norm(own)
     # one sample of a random error; were it all of the difference, or none of it, it would be 1.12 times or 0
-    assert found.share("top", "velocity", recorded["top"]) == pytest.approx(true, rel=0.3)
-    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)
-    assert true > 3.0 * formula.share("top", "velocity", recorded["top"])
+    assert found.share("top", "velocity", top) == pytest.approx(true, rel=0.3)
+    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(motions) if cause.name == STEP)
+    assert true > 3.0 * formula.share("top", "velocity", top)
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
@@ -164,22 +160,14 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
 
 
 COLUMN: Tables = SOIL | {
-    "packing": {
-        "pattern": "B",
-        "radius": 0.125,
-        "radius_ratio": 1.5,
-        "brick": [2.5, 2.5],
-        "seed": 3,
-        "size": [2.5, 12.5],
-    },
+    "packing": grains(2.5, 12.5, 0.25, 2.5, 3),
     "wave": {"in": SOIL["wave"]["in"] | {"frequency": 10.0}},
-    "monitor": [{"name": "top", "position": [1.25, 12.5]}, {"name": "sand", "position": [1.25, 5.0]}],
+    "monitor": monitors(top=(1.25, 12.5), sand=(1.25, 5.0)),
 }
 """Random disks in long waves."""
 
-LATTICE: Tables = SOIL | {
-    "boundary": SOIL["boundary"] | {"bottom": SOIL["boundary"]["bottom"] | {"half_mass": True}},
-}
+BELOW = {"bottom": SOIL["boundary"]["bottom"] | {"half_mass": True}}
+LATTICE: Tables = SOIL | {"boundary": SOIL["boundary"] | BELOW}
 """Short waves without reflections at the bottom: errors are those of the disks."""
 
 
@@ -187,15 +175,11 @@ def test_estimates_of_a_column_are_near_its_errors_beside_the_exact_motion() -> 
     case, within = small(LATTICE), 1.5
     scene = build(case)
     step = choose_step(scene)[0]
-    run = measure(case, Progress())[0]
-    recorded = {
-        name: replace(own, values={quantity: values[:, :2] for quantity, values in own.values.items()})
-        for name, own in run.motions.items()
-    }
-    moved = earlier(recorded, late_by(scene))
+    motions = recorded(case)
+    moved = earlier(motions, late_by(scene))
     solution = judge_of(case).exact(case)
     exact = solution.motions(case, moved)
-    causes = [each for each in causes_of(case, recorded, step, 1e9).found if each.name != "places"]
+    causes = [each for each in causes_of(case, motions, step, 1e9).found if each.name != "places"]
     for name, own in moved.items():
         error = relative_error(own.velocity[:, 0] - exact[name].velocity[:, 0], exact[name].velocity[:, 0])
         assert 1e-3 < error < 0.05
@@ -233,8 +217,7 @@ def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
 def test_what_is_known_of_uniform_ground_alone_is_not_used() -> None:
     held = COLUMN["boundary"] | {"bottom": {"type": "velocity", "wave_s": "in"}}
     scene = build(small(LATTICE | {"boundary": held}))
-    motions = {}
-    (side,) = Formulas(scene, 1e-4).held_sides.causes(motions)
+    (side,) = Formulas(scene, 1e-4).held_sides.causes({})
     assert side.how == "unknown"
     jumping = small(LATTICE, changes={"wave.in": {"type": "constant", "amplitude": 1.0, "start": 0.1}})
     with pytest.raises(CaseError, match="continuous"):
@@ -262,9 +245,8 @@ def test_runs_with_several_seeds_scatter_about_their_mean_and_lattices_have_none
     assert all(each.run.until != "silent" for each in seen)  # they must not end before the record
     # the first is one less than the mean of 7, 8 and 9; of three runs it is nearer to their own mean by √(2/3)
     np.testing.assert_allclose(cause.parts["top"]["displacement"], -np.outer(times, [1.0, 2.0]) * 1.5**0.5, atol=1e-12)
-    np.testing.assert_allclose(
-        cause.parts["top"]["velocity"], -3.0 * np.outer(times, [1.0, 2.0]) * 1.5**0.5, atol=1e-12
-    )
+    rate = -3.0 * np.outer(times, [1.0, 2.0]) * 1.5**0.5
+    np.testing.assert_allclose(cause.parts["top"]["velocity"], rate, atol=1e-12)
     assert cause.is_sample
     assert cause.of_disks
     with pytest.raises(CaseError, match="no random packing"):

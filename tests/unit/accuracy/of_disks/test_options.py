@@ -7,7 +7,8 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from small_cases import GRAINS, PUSHED, Tables, small
+from scene_tables import grains
+from small_cases import GRAINS, PUSHED, Tables, around, small
 
 from dembound.accuracy.of_disks.arrangements import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
 from dembound.accuracy.of_disks.cost import Counted, planned_cost
@@ -28,17 +29,18 @@ def steps(tables: Tables, kept: Sequence[str] = (), **changes: Any) -> set[float
     return {round(option.case.run.safety / 0.9, 9) for option in Options(planned, 0.01, kept).of(1.0)}
 
 
-@pytest.mark.parametrize(("kept", "expected"), [((), {1.0, 0.5, 0.25}), (("run.safety",), {1.0})])
-def test_the_step_is_shorter_where_disks_remain(kept: Sequence[str], expected: set[float]) -> None:
-    assert steps(GRAINS, kept, **{"run.safety": 0.9}) == expected
-
-
-def test_the_step_follows_disks_that_may_change() -> None:
-    assert steps(PUSHED, **{"run.safety": 0.9}) == {1.0}
+@pytest.mark.parametrize(
+    ("tables", "kept", "expected"),
+    [(GRAINS, (), {1.0, 0.5, 0.25}), (GRAINS, ("run.safety",), {1.0}), (PUSHED, (), {1.0})],
+)
+def test_the_step_is_shorter_where_disks_remain(tables: Tables, kept: Sequence[str], expected: set[float]) -> None:
+    """It follows disks that may change."""
+    assert steps(tables, kept, **{"run.safety": 0.9}) == expected
 
 
 ROCK = {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5}
 VISCOUS = {"type": "viscous"}
+BASE = {"type": "viscous_input", "wave_s": "pulse", "half_mass": True}
 RICKER = {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 25.0}}
 PUSH = {"name": "push", "force": [0.0, -1e6], "region": [14.0, 14.0, 16.0, 15.0], "wave": "pulse"}
 
@@ -54,11 +56,7 @@ FORCE: dict[str, Any] = {
 WITHOUT = {key: value for key, value in FORCE.items() if key != "load"}
 TUNNEL = WITHOUT | {
     "packing": {"pattern": "A", "size": [40.0, 30.0], "radius": 0.5},
-    "boundary": {
-        "left": {"type": "free_field"},
-        "right": {"type": "free_field"},
-        "bottom": {"type": "viscous_input", "wave_s": "pulse", "half_mass": True},
-    },
+    "boundary": around("free_field", "left", "right") | {"bottom": BASE},
     "hole": [{"name": "tunnel", "type": "circle", "centre": [20.0, 15.0], "radius": 4.0}],
     "monitor": [{"name": "wall", "position": [26.5, 15.5]}],
 }
@@ -68,18 +66,9 @@ BAR = WITHOUT | {
     "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}, "right": VISCOUS},
     "monitor": [{"name": "far", "position": [50.5, 1.5]}],
 }
-RANDOM = FORCE | {
-    "packing": {
-        "pattern": "B",
-        "radius": 0.5,
-        "radius_ratio": 1.5,
-        "brick": [10.0, 15.0],
-        "seed": 1,
-        "size": [30.0, 15.0],
-    },
-}
+RANDOM = FORCE | {"packing": grains(30.0, 15.0, 1.0, 10.0) | {"brick": [10.0, 15.0]}}
 FOUR = FORCE | {
-    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+    "boundary": around("outside", "left", "right", "bottom", "top"),
     "load": [PUSH | {"region": [14.0, 7.0, 16.0, 8.0]}],
 }
 
@@ -105,13 +94,8 @@ def options_of(tables: dict[str, Any], **changes: Any) -> Options:
 def test_counted_costs_are_those_of_plans(tables: dict[str, Any], factors: tuple[float, ...]) -> None:
     options = options_of(tables)
     names = set()
-    for factor in factors:
-        for option in options.of(factor):
-            if option.wider:
-                continue
-            built = options.build(option)
-            if built is None:
-                continue
+    for option in (option for factor in factors for option in options.of(factor) if not option.wider):
+        if (built := options.build(option)) is not None:
             names.add(option.arrangement)
             assert BOUNDS[0] <= option.cost / built.cost <= BOUNDS[1], option.words
             counted, planned = Counted(options.given).of(option.case), planned_cost(built.planned)
@@ -150,11 +134,7 @@ def tunnel(**changes: Any) -> DiskCase:
     tables: dict[str, Any] = {
         "packing": {"pattern": "A", "size": list(SIZE), "radius": 0.5},
         "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
-        "boundary": {
-            "left": VISCOUS,
-            "right": VISCOUS,
-            "bottom": {"type": "viscous_input", "wave_s": "pulse", "half_mass": True},
-        },
+        "boundary": around("viscous", "left", "right") | {"bottom": BASE},
         "hole": [{"name": "tunnel", "type": "circle", "centre": [60.0, 50.0], "radius": 8.0}],
         "wave": {"pulse": {"type": "cosine", "amplitude": 0.5, "period": 0.2}},
         "run": {"duration": 0.1},
@@ -193,9 +173,9 @@ def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     "changes",
     [
         {"hole": []},
-        {"boundary": {"left": VISCOUS, "right": {"type": "free"}, "bottom": VISCOUS}},
-        {"boundary": {"left": {"type": "periodic"}, "right": {"type": "periodic"}, "bottom": VISCOUS}},
-        {"boundary": {"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": VISCOUS, "bottom": VISCOUS}},
+        {"boundary": around("viscous") | around("free", "right")},
+        {"boundary": around("periodic", "left", "right") | around("viscous", "bottom")},
+        {"boundary": around("viscous") | {"left": {"type": "viscous_input", "wave_p": "pulse"}}},
     ],
     ids=["nothing in it", "not ground all round", "periodic", "a wave from the left"],
 )

@@ -220,7 +220,6 @@ def test_stress_along_a_periodic_axis_is_there_from_the_start(bar) -> None:
 SHEAR = 0.4e6
 STRESS = {"ratio": 1e-8, "stress": [-1e6, -1e6, SHEAR]}
 LAW = {"material.law": "linearpbond", "material.fric": 2.0, "packing.size": [8.0, 8.0]}
-K = 2500.0 * 1000.0**2
 
 
 def sheared(bar, **changes: object) -> SimpleNamespace:

@@ -148,19 +148,19 @@ def test_ground_without_a_surface_sends_nothing_back() -> None:
     np.testing.assert_allclose(found, expected, atol=1e-5)
 
 
-SURFACE, MASS, GRAIN = 30.0, 3.0, 0.1
+LIGHT = 3.0
 
 
 def layers(media: list[Medium], joints: list[float], kind: str = "sv", angle: float = -25.0) -> ObliqueLayers:
     incident = incident_wave(media[-1], kind, angle).shifted(0.01)
-    return oblique_in_layers(media, joints, (SURFACE, MASS), incident, WAVELET, (0.0, 0.2), GRAIN)
+    return oblique_in_layers(media, joints, (SURFACE, LIGHT), incident, WAVELET, (0.0, 0.2), GRAIN)
 
 
 @pytest.mark.parametrize("kind", ["sv", "p"])
 def test_equal_layers_move_as_uniform_ground(kind: str) -> None:
     """Of any symmetry, with correctors, with the same first arrival, and with the same power through all sides."""
     incident = incident_wave(GENERAL, kind, -25.0).shifted(0.01)
-    waves = (incident, *reflected_waves(GENERAL, incident, SURFACE, MASS))
+    waves = (incident, *reflected_waves(GENERAL, incident, SURFACE, LIGHT))
     uniform = GroundWaves(GENERAL, waves, (WAVELET,) * len(waves), GRAIN)
     equal = layers([GENERAL] * 3, [20.0, 8.0], kind)
     rng = np.random.default_rng(1)

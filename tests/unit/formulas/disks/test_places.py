@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import tomli_w
-from scene_tables import ISOTROPIC, lattice, pulse
-from small_cases import GRAINS, PUSHED, small
+from scene_tables import ISOTROPIC, lattice, monitors, point, pulse
+from small_cases import GRAINS, PUSHED, around, small
 
 from dembound.accuracy.judges import extended
 from dembound.accuracy.of_disks.companions import Companions
@@ -16,18 +16,9 @@ from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS
+from dembound.formulas.disks import walls
 from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, weights_at
-from dembound.formulas.disks.walls import (
-    BETWEEN,
-    CREEP,
-    DARK,
-    FALL,
-    LIT,
-    OF_WAVES,
-    RANDOM,
-    SHORT,
-    wall_errors,
-)
+from dembound.formulas.disks.walls import BETWEEN, CREEP, DARK, LIT, OF_WAVES, SHORT, wall_errors
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
 from dembound.kinds import loads, with_changes
@@ -35,7 +26,7 @@ from dembound.packings import Square
 from dembound.running import Progress, plan
 
 
-def lattice(**changes: object) -> DiskScene:
+def grid(**changes: object) -> DiskScene:
     """Disks of 0.5 m in 10 m × 2.5 m, the first at 0.25 m."""
     return build(small(PUSHED, changes=changes))
 
@@ -60,8 +51,8 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
     ids=["inside", "in a corner"],
 )
 def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
-    np.testing.assert_allclose(patch_around(lattice(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
-    low = lattice(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
+    np.testing.assert_allclose(patch_around(grid(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
+    low = grid(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
     row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
     np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
     assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
@@ -101,20 +92,15 @@ def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it()
     It is found from the change over a row of 3 m below, 2 m from that over 1 m above, so that what a wave of 88 m sends
     back comes by the phase 2·2π·2/88 = 0.29 too early or late; the disks of 3 m add less.
     """
+    tables = {
+        "packing": lattice(30.0, 30.0, 1.0),
+        "boundary": around("viscous"),
+        "material": ISOTROPIC,
+        "wave": {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 8.0}},
+        "run": {"duration": 0.25},
+    }
     low, high = (
-        small(
-            PUSHED
-            | {
-                "packing": {"pattern": "A", "size": [30.0, 30.0], "radius": 0.5},
-                "motion": {},
-                "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")},
-                "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
-                "wave": {"push": {"type": "ricker", "amplitude": 1.0, "frequency": 8.0}},
-                "load": [{"name": "hit", "force": [1e5, 1e5], "position": [10.5, y], "wave": "push"}],
-                "monitor": [{"name": "there", "position": [16.5, y]}],
-                "run": {"duration": 0.25},
-            }
-        )
+        small(tables | {"load": [point((1e5, 1e5), (10.5, y))], "monitor": monitors(there=(16.5, y))})
         for y in (19.5, 20.5)
     )
     planned = plan(high)
@@ -204,7 +190,7 @@ def test_short_waves_are_most_wrong_behind_a_hole_but_not_where_the_surface_cuts
         tables = {
             "packing": lattice(20.0, 20.0, 0.5),
             "material": ISOTROPIC,
-            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+            "boundary": around("outside"),
             "hole": [bore | {"centre": [10.0, height]}],
             "incident": {"type": kind, "angle": 30.0, "wave": "pulse"},
             "wave": pulse(period),
@@ -221,7 +207,7 @@ def test_short_waves_are_most_wrong_behind_a_hole_but_not_where_the_surface_cuts
         along = number / speed
         behind = along * (LIT + DARK + CREEP * along) / 4.0
         assert errors(kind) == pytest.approx([along * LIT / 4.0, behind], rel=1e-3)
-        assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**FALL, rel=1e-3)
+        assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**walls.FALL, rel=1e-3)
         mean = along * (LIT + 0.5 * (DARK + CREEP * along)) / 4.0
         assert errors(kind, height=20.0) == pytest.approx([mean, mean], rel=1e-3)
 
@@ -230,4 +216,4 @@ def test_no_wall_in_a_random_packing_is_between_disks() -> None:
     burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "pulse"}
     hole = {**CAVE, "corners": [3.0, 1.0, 6.0, 3.0]}
     random = small(GRAINS, changes={"hole": [hole], "monitor": [], "load": [burst]})
-    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(RANDOM / 2.0)
+    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(walls.RANDOM / 2.0)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_cases import PUSHED, small
+from small_cases import PUSHED, around, small
 
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import DiskScene, build
@@ -130,10 +130,8 @@ def test_a_wave_comes_as_much_later_as_it_enters(kind: str, motion: str) -> None
     own = measure(case, Progress())[0].motions["inside"]
     velocity = own.velocity[:, 1 if motion == "p" else 0]
     wave, y = case.wave["w"], float(own.place[1])
-    rest = [
-        float(np.linalg.norm(velocity - wave.velocity(own.time - (y + at) / entry.speed)) / np.linalg.norm(velocity))
-        for at in (entry.late - 0.02, entry.late, entry.late + 0.02)
-    ]
+    ways = [y + entry.late + off for off in (-0.02, 0.0, 0.02)]
+    rest = [np.linalg.norm(velocity - wave.velocity(own.time - way / entry.speed)) for way in ways]
     assert rest[1] < min(rest[0], rest[2])  # within 10 mm
     assert late_by(scene) == pytest.approx(entry.late / entry.speed)
 
@@ -153,11 +151,8 @@ STEP = 1e-4
 
 
 def shares(side="right", **keys):
-    boundary = {
-        "left": {"type": "velocity", "wave_p": "push"},
-        **{name: {"type": "periodic"} for name in ("bottom", "top")},
-        side: {"type": "viscous", **keys},
-    }
+    boundary = around("periodic", "bottom", "top") | {"left": {"type": "velocity", "wave_p": "push"}}
+    boundary |= {side: {"type": "viscous", **keys}}
     wave = {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.04}}
     return Reflections().of(build(small(PUSHED | {"boundary": boundary, "wave": wave})), side, STEP)
 
@@ -204,10 +199,11 @@ def scene(radius: float) -> DiskScene:
 def recorded(place: tuple[float, float], move: tuple[float, float]) -> History:
     """Motion of one frequency along a vector."""
     shape = np.array(move)
-    velocity = np.sin(RATE * TIME)[:, None] * shape
-    return History(
-        np.array(place), TIME, {"velocity": velocity, "displacement": -np.cos(RATE * TIME)[:, None] * shape / RATE}
-    )
+    values = {
+        "velocity": np.outer(np.sin(RATE * TIME), shape),
+        "displacement": np.outer(np.cos(RATE * TIME), -shape / RATE),
+    }
+    return History(np.array(place), TIME, values)
 
 
 def near(diameter: float, distance: float, wide: float = WIDE) -> float:
@@ -224,13 +220,10 @@ def test_it_is_of_second_order_in_the_disks_times_the_curvature_along_the_ray() 
     assert finer["velocity"] == pytest.approx(expected / 4.0, rel=1e-3)
 
 
-def test_motion_across_the_ray_has_none_as_its_waves_are_shear() -> None:
+def test_motion_across_the_ray_has_none_and_half_of_it_at_45_degrees_is_along_the_ray() -> None:
+    """Waves across are shear; the part along the ray of v along x is v cos 45°, and cos 45° of that is along x."""
     found = errors_near_loads(scene(0.25), recorded((7.0, 1.0), (0.0, 1.0)))
     assert found == pytest.approx({"velocity": 0.0, "displacement": 0.0}, abs=1e-12)
-
-
-def test_half_of_motion_at_45_degrees_is_along_the_ray() -> None:
-    """The part along the ray of v along x is v cos 45°, and cos 45° of that is along x."""
     own = recorded((2.0 + 1.2, 1.0 + 1.2), (1.0, 0.0))
     expected = 0.5 * near(0.5, 1.2 * 2.0**0.5)
     assert errors_near_loads(scene(0.25), own)["velocity"] == pytest.approx(expected, rel=1e-3)
