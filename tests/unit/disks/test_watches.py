@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_cases import GRAINS, small
+from scene_tables import point, pulse
+from small_cases import GRAINS, around, small
 
-from dembound.casefile import Case
 from dembound.disks.bearing import BearingTie
 from dembound.disks.reduced import OneRow, reduced
 from dembound.disks.scene import DiskScene, build
@@ -22,15 +22,8 @@ from dembound.running import plan, require_ready
 
 LOOSE: dict[str, Any] = {
     "packing": {"pattern": "A", "size": [2.0, 2.0], "radius": 0.25},
-    "material": {
-        "law": "linearpbond",
-        "density": 2500.0,
-        "emod": 1e7,
-        "pb_emod": 1e5,
-        "pb_ten": 1.0,
-        "pb_coh": 1.0,
-        "elastic_start": False,
-    },
+    "material": {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 1e5, "pb_ten": 1.0, "pb_coh": 1.0}
+    | {"elastic_start": False},
     "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
     "run": {"duration": 1.0},
     "output": {"pictures": False},
@@ -42,8 +35,7 @@ class Falling:
     """A run of the heap in free fall, disks of which are thrown down."""
 
     def __init__(self, *, retires: bool) -> None:
-        scene = build(small(LOOSE))  # type: ignore[arg-type]
-        assert isinstance(scene, DiskScene)
+        scene = build(small(LOOSE))
         self.scene, self.step = scene, choose_step(scene)[0]
         self.run = Simulation(scene, self.step)
         self.far, self.ledger = FarDisks(scene, retires=retires), Ledger(self.run, STEPS // 4)
@@ -97,28 +89,20 @@ def test_those_that_retire_stay_where_they_are_with_their_energy_accounted_for(f
     assert np.array_equal(state.displacement[:, rest], fallen[False].run.state.displacement[:, rest])
 
 
-FREE: dict[str, Any] = {
-    "packing": {"pattern": "A", "size": [2.0, 2.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
-    "load": [{"name": "touch", "force": [1e-9, 0.0], "position": [0.2, 0.2], "wave": "w"}],
-    "wave": {"w": {"type": "cosine", "amplitude": 1.0, "period": 1.0}},
-    "run": {"duration": 1.0},
-    "output": {"pictures": False},
-}
 KEPT: dict[str, Any] = {"law": "linearpbond", "geometry": "reference", "elastic_start": False}
 
 
-def free(**material: Any) -> Case:
-    return small(FREE | {"material": FREE["material"] | material})  # type: ignore[arg-type]
-
-
-def at_rest(case: Case) -> Simulation:
-    return Simulation(build(case), 1e-5)  # type: ignore[arg-type]
+def at_rest(**material: Any) -> Simulation:
+    free = {
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0} | material,
+        "load": [point((1e-9, 0.0), (0.2, 0.2))],
+    }
+    return Simulation(build(small(LOOSE | free | {"wave": pulse(1.0)})), 1e-5)
 
 
 @pytest.mark.parametrize("material", [{}, KEPT])
 def test_the_largest_turn_is_found_whichever_way_and_wherever_it_is(material) -> None:
-    run = at_rest(free(**material))
+    run = at_rest(**material)
     x, y = run.scene.positions.T
     for turn in (0.3, -0.4):
         run.state.displacement = np.stack([2.0 - turn * y, turn * x - 3.0, 0.0 * x])
@@ -134,7 +118,7 @@ def test_the_largest_turn_is_found_whichever_way_and_wherever_it_is(material) ->
 
 
 def test_a_body_that_spins_under_the_elastic_law_grows_as_said() -> None:
-    run, steps, spin = at_rest(free()), 100, 400.0
+    run, steps, spin = at_rest(), 100, 400.0
     arm = (run.scene.positions - run.scene.positions.mean(axis=0)).T
     run.state.velocity = spin * np.stack([-arm[1], arm[0], np.ones(len(arm[0]))])
     tracker = Turns()
@@ -156,8 +140,7 @@ def test_a_body_that_spins_under_the_elastic_law_grows_as_said() -> None:
     np.testing.assert_array_equal(again.found, tracker.found)
 
 
-FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
-PERIODIC = {side: {"type": "periodic"} for side in ("left", "right")}
+PERIODIC = around("periodic", "left", "right")
 
 
 def scene(sides: dict[str, Any], **bearing: float) -> DiskScene:
@@ -181,7 +164,10 @@ def forces(body: DiskScene, moved: np.ndarray, datum: np.ndarray | None = None) 
     return found
 
 
-@pytest.mark.parametrize("sides", [FREE_FIELD, PERIODIC], ids=["twins", "mean"])
+TWINS_OR_MEAN = pytest.mark.parametrize("sides", [around("free_field", "left", "right"), PERIODIC])
+
+
+@TWINS_OR_MEAN
 def test_motion_of_the_ground_without_the_body_meets_no_force(sides) -> None:
     body = scene(sides)
     rng = np.random.default_rng(1)
@@ -191,7 +177,7 @@ def test_motion_of_the_ground_without_the_body_meets_no_force(sides) -> None:
     assert np.abs(forces(body, own)).max() < 1e-15 * body.bearing.stiffness.max() * len(body.bearing.node)
 
 
-@pytest.mark.parametrize("sides", [FREE_FIELD, PERIODIC], ids=["twins", "mean"])
+@TWINS_OR_MEAN
 def test_one_disk_is_pulled_back_by_its_share_of_the_shear_modulus(sides) -> None:
     body = scene(sides, alpha_n=3.0, alpha_s=0.25)
     edge, datum = body.sides["bottom"], 0.1 * np.random.default_rng(2).uniform(-1.0, 1.0, (3, body.count))
@@ -250,7 +236,6 @@ def test_a_zone_may_be_larger_than_the_strip_in_which_its_side_is_examined(bar) 
 
 P_INPUT = {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}
 S_INPUT = {"motion.held": ["x"], "boundary.left": {"type": "viscous_input", "wave_s": "pulse"}}
-ROUND = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
 SPRINGS = {"type": "viscoelastic", "distance": 20.0}
 HOLE = {"hole": [{"name": "gap", "type": "circle", "centre": [5.25, 1.25], "radius": 0.1}]}
 BROAD = {"packing.size": [10.0, 2.0]}
@@ -271,15 +256,20 @@ def load(**keys):
     return {"load": [{"name": "push", **keys}]}
 
 
+def both(kind: str) -> dict[str, Any]:
+    """Lower and upper sides of a type, with free motion."""
+    return {"boundary.bottom": {"type": kind}, "boundary.top": {"type": kind}, "motion.held": []}
+
+
 @pytest.mark.parametrize(
     "changes",
     [
         {},
         {"monitor": [{"name": "corner", "position": [0.0, 2.0]}]},
-        {"boundary.bottom": {"type": "roller"}, "boundary.top": {"type": "roller"}, "motion.held": []},
-        {"boundary.bottom": {"type": "symmetry"}, "boundary.top": {"type": "symmetry"}, "motion.held": []},
+        both("roller"),
+        both("symmetry"),
         {"boundary.right": SPRINGS},
-        S_INPUT | ROUND | {"motion.held": []},
+        S_INPUT | both("periodic"),
         load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0]),
         load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0], wave="pulse"),
     ],
@@ -309,7 +299,7 @@ def test_rows_that_move_identically_are_stepped_as_one(plain, changes) -> None:
         {"boundary.bottom": SPRINGS | {"alpha_n": 0.0}},
         {"boundary.right": {"type": "viscoelastic", "source": [0.0, 1.0]}},
         S_INPUT,  # the outer rows have one contact less that resists their rotation
-        S_INPUT | {"motion.held": [], "boundary.bottom": {"type": "symmetry"}, "boundary.top": {"type": "symmetry"}},
+        S_INPUT | both("symmetry"),
         {"material.law": "linearpbond"},
         {"static.stress": [-1e6, -1e6, 0.0]},
         {"boundary.right": {"type": "free_field"}, "motion.held": []},

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scene_tables import monitors
 
 from dembound.boundaries import Velocity
 from dembound.kinds import kind_of
@@ -45,9 +46,7 @@ def pulse(length: int, first: int, last: int, height: float = 1.0) -> np.ndarray
 def test_a_run_ends_once_all_have_been_silent_for_long_enough(block: int) -> None:
     speeds = np.column_stack([pulse(100, 5, 20), pulse(100, 10, 30)])
     # the last loud step is 30; four seconds are eight steps, and 31 … 38 are the eight silent ones: 39 steps done
-    whole = ended_at(speeds, Silent(1e-3, 4.0, 0.0), block)
-
-    assert whole == -(-39 // block) * block
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), block) == -(-39 // block) * block
 
 
 def test_the_level_is_that_of_the_peak_so_far() -> None:
@@ -84,11 +83,9 @@ LATER = {"type": "cosine", "amplitude": 1.0, "period": 0.02, "start": 0.5}
 
 
 def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
-    changes = {"monitor": [{"name": "near", "position": [2.0, 0.5]}, {"name": "far", "position": [8.0, 0.5]}]}
-    changes |= {"run.until": "silent", "run.duration": 1.0}
+    changes = {"monitor": monitors(near=(2.0, 0.5), far=(8.0, 0.5)), "run.until": "silent", "run.duration": 1.0}
     rule, scene = rule_of(bar(changes))
-    far = scene.positions[scene.monitors["far"], 0]
-    near = scene.positions[scene.monitors["near"], 0]
+    near, far = scene.positions[[scene.monitors["near"], scene.monitors["far"]], 0]
     assert rule.level == 1e-3
     # P waves from the left at 1000 m/s; from the far one to the left and back, or from the near one to the right
     assert rule.earliest == pytest.approx(0.01 + far / 1000.0, rel=1e-12)
@@ -98,8 +95,7 @@ def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
     later, scene = rule_of(bar({**changes, "load": [load], "wave.late": LATER}))
     # y is held: P waves only along x, and S waves of 500 m/s across, half of the stiffness being without shear
     near = scene.positions[scene.monitors["near"]]
-    slow = 500.0
-    assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / slow, rel=1e-12)
+    assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / 500.0, rel=1e-12)
     constant = {"type": "constant", "amplitude": 0.1, "start": 0.2}  # waited for until it comes
     assert rule_of(bar({**changes, "wave.pulse": constant}))[0].earliest == pytest.approx(0.2 + far / 1000.0, rel=1e-12)
     assert rule_of(bar({**changes, "wave.pulse.period": 0.9}))[0].hold == pytest.approx(0.9, rel=1e-12)

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from oblique import dashpot_formula
-from small_cases import GRAINS, small
+from scene_tables import ISOTROPIC, lattice
+from small_cases import GRAINS, around, small
 
 from dembound.continuum.sizing import Signal
 from dembound.disks.reflection import measure_side, measured_sides
@@ -19,9 +20,9 @@ from dembound.waves import FileWave
 
 DIAMETER, SPEED = 0.5, 1000.0
 LATTICE = {
-    "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.5 * DIAMETER},
-    "material": {"density": 2500.0, "p_wave_speed": SPEED, "fric": 0.5},
-    "boundary": {"right": {"type": "viscous"}},
+    "packing": lattice(8.0, 4.0, DIAMETER),
+    "material": ISOTROPIC,
+    "boundary": around("viscous", "right"),
     "run": {"duration": 0.01},
 }
 
@@ -112,8 +113,7 @@ def test_a_side_is_measured_beside_matched_factors_and_a_continuum() -> None:
     ],
 )
 def test_what_is_refused(side, angles, frequencies, message) -> None:
-    lateral = {"type": "periodic"}
-    case = small(LATTICE, changes={"boundary": {"right": {"type": "viscous"}, "top": lateral, "bottom": lateral}})
+    case = small(LATTICE | {"boundary": around("viscous", "right") | around("periodic", "top", "bottom")})
     with pytest.raises(CaseError, match=message):
         measure_side(case, side, angles, frequencies)
     with pytest.raises(CaseError, match="no side that absorbs"):
@@ -122,9 +122,8 @@ def test_what_is_refused(side, angles, frequencies, message) -> None:
 
 def test_springs_and_dashpots_along_the_normal_reflect_by_their_impedance() -> None:
     """R = (ρc − z)/(ρc + z) with z = c + k/iω of all supports per m of the side; on a lattice no P wave becomes S."""
-    lattice = {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25}
     table = {"type": "viscoelastic", "distance": 3.0, "alpha_n": 2.0, "beta_p": 0.7}
-    scene = end_scene(small({**GRAINS, "packing": lattice, "boundary": {"right": table}}), "right")
+    scene = end_scene(small(LATTICE | {"boundary": {"right": table}}), "right")
     found = by_smeared_supports(scene, "right", [15.0], [0.0])
     ground, supports = scene.ground, scene.supports
     length, own = scene.assembly.size[1], supports.component == 0
@@ -153,10 +152,8 @@ POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "
 def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> None:
     case = small(GRAINS | {"load": [POINT]})
     ground = ground_of(case)
-    assert [(each.name, each.kinds) for each in arrivals_of(case, "top", ground)][:2] == [
-        ("wave pulse along the normal", ("p",)),
-        ("wave pulse along the normal", ("s",)),
-    ]
+    along = [("wave pulse along the normal", (kind,)) for kind in "ps"]
+    assert [(each.name, each.kinds) for each in arrivals_of(case, "top", ground)][:2] == along
     (spreading,) = arrivals_of(case, "right", ground)
     assert spreading.name == "waves from load blow"
     assert spreading.kinds == ("p", "s")
@@ -165,9 +162,8 @@ def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> Non
     assert spreading.angles.min() == pytest.approx(0.0)
     assert spreading.shares.sum() == pytest.approx(1.0)
     # cos θ / r of waves that spread in the plane: cos² θ at the same distance of the side
-    np.testing.assert_allclose(
-        spreading.shares / spreading.shares.max(), np.cos(np.radians(spreading.angles)) ** 2, rtol=1e-12
-    )
+    shares = np.cos(np.radians(spreading.angles)) ** 2
+    np.testing.assert_allclose(spreading.shares / spreading.shares.max(), shares, rtol=1e-12)
 
 
 def test_a_load_on_the_side_does_not_reach_it_and_without_sources_all_directions_do() -> None:
@@ -192,8 +188,7 @@ def test_shares_are_weighted_with_the_spectrum_of_the_wave() -> None:
     of_force = over_spectrum(shares, np.array([1.0, 10.0]), Signal(tones, is_force=True))
     np.testing.assert_allclose(of_force, [(4.0 * 0.1 + 10.0 * 0.6) / 14.0, 0.3, 0.2], rtol=5e-3)
     # halfway between two frequencies in log f the mean of both shares, beyond them that of the nearer one
-    np.testing.assert_allclose(
-        over_spectrum(np.array([[0.0], [1.0]]), np.array([0.1, 10.0]), Signal(tones, is_force=False)), 0.6, rtol=1e-2
-    )
+    between = over_spectrum(np.array([[0.0], [1.0]]), np.array([0.1, 10.0]), Signal(tones, is_force=False))
+    np.testing.assert_allclose(between, 0.6, rtol=1e-2)
     np.testing.assert_allclose(over_spectrum(shares, np.array([1.0, 10.0]), None), [0.35, 0.3, 0.2])
     assert np.isnan(over_spectrum(np.full((2, 1), np.nan), np.array([1.0, 10.0]), None)).all()

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from angles import FREQUENCY, Side, reflection
-from small_cases import GRAINS, OPEN, SOIL, small
+from scene_tables import ISOTROPIC, lattice, monitors, pulse
+from small_cases import GRAINS, OPEN, SOIL, around, small
 
 from dembound import api
 from dembound.continuum.layer import Absorption
@@ -18,20 +19,15 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.spectra import fourier_spectrum
 
-LENGTH, SPEED, PERIOD = 100.0, 1000.0, 0.04
 SPRINGS = {"type": "viscoelastic", "distance": 5.0, "alpha_n": 2.5}
 
 STRIP = {
-    "packing": {"pattern": "A", "size": [LENGTH, 0.5], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": SPEED, "fric": 0.5},
-    "boundary": {
-        "left": {"type": "velocity", "wave_p": "pulse"},
-        "right": SPRINGS,
-        "bottom": {"type": "periodic"},
-        "top": {"type": "periodic"},
-    },
-    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": PERIOD}},
-    "monitor": [{"name": "middle", "position": [0.5 * LENGTH, 0.25]}],
+    "packing": lattice(100.0, 0.5, 0.5),
+    "material": ISOTROPIC,
+    "boundary": around("periodic", "bottom", "top")
+    | {"left": {"type": "velocity", "wave_p": "pulse"}, "right": SPRINGS},
+    "wave": pulse(0.04, 1.0),
+    "monitor": monitors(middle=(50.0, 0.25)),
     "run": {"duration": 0.245, "time_step": 2e-4},
     "output": {"pictures": False, "history_interval": 2e-4},
 }
@@ -45,9 +41,8 @@ def test_springs_return_in_a_run_what_is_computed_and_their_formula_says(tmp_pat
     """
     case = small(STRIP)
     frequencies = [5.0, 10.0, 20.0]
-    found, arrivals = compare_types(
-        case, "right", [SPRINGS, {"type": "viscous", "half_mass": True}], [0.0], frequencies
-    )
+    types = [SPRINGS, {"type": "viscous", "half_mass": True}]
+    found, arrivals = compare_types(case, "right", types, [0.0], frequencies)
     assert [*found] == ["viscoelastic, distance 5.0, alpha_n 2.5", "viscous, half_mass"]
     computed = np.sqrt(found["viscoelastic, distance 5.0, alpha_n 2.5"].total("p")[:, 0])
     formula = 1.0 / np.sqrt(1.0 + (4.0 * np.pi * np.array(frequencies) / 250.0) ** 2)
@@ -127,9 +122,8 @@ def test_without_absorption_all_comes_back(name, element) -> None:
 
 def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None:
     """Periodic and as wide as one element: its ties have the mean motion, as in a run."""
-    lateral = {"type": "periodic"}
-    ends = {"right": {"type": "outside"}, "left": {"type": "viscous", "beta_p": 1.0}}
-    ends |= {"bottom": lateral, "top": lateral}
+    ends = around("outside", "right") | around("periodic", "bottom", "top")
+    ends |= {"left": {"type": "viscous", "beta_p": 1.0}}
     case = small({**GRAINS, "boundary": ends, "outside": {"element": 4.0}})
     found = measure_side(case, "right", [0.0, 30.0], [30.0])
     assert found.found.angles.tolist() == [0.0]

@@ -3,16 +3,27 @@
 import numpy as np
 import pytest
 from ground_motions import GENERAL, RAMP, ground, sine
-from small_cases import SURROUNDED, small
+from small_cases import SURROUNDED, problems_in, small
 
 from dembound.continuum.medium import Medium, incident_wave, reflected_waves
 from dembound.disks.scene import build
 from dembound.disks.surroundings.ground_waves import GroundMotion, GroundWaves
 from dembound.disks.surroundings.incident import power_through
-from dembound.disks.surroundings.layered_waves import LayeredWaves, rising_in_layers
+from dembound.disks.surroundings.layered_waves import rising_in_layers
 from dembound.disks.surroundings.oblique_layers import ObliqueLayers, oblique_in_layers
-from dembound.errors import CaseError
 from dembound.waves import Ricker
+
+
+def require_near(waves, times: np.ndarray, places: np.ndarray, corrector: np.ndarray, step: float, of: float) -> None:
+    """Motion, strain, and velocities half a step behind, near places and as by the waves."""
+    near = waves.near(places)
+    exact = waves.motion("displacement", times, places, corrector)
+    found = np.einsum("tq,cdq->tdc", near.amplitudes(times, 0.0), near.motion(places, corrector))
+    np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
+    exact = waves.motion("velocity", times, places)
+    behind = near.amplitudes(times + step, step) @ near.velocities(step).T
+    found = np.einsum("tq,cdq->tdc", behind, near.motion(places, 0.0 * corrector))
+    np.testing.assert_allclose(found, exact, atol=of * np.abs(exact).max())
 
 
 def test_near_places_the_motion_is_that_of_the_waves() -> None:
@@ -20,15 +31,10 @@ def test_near_places_the_motion_is_that_of_the_waves() -> None:
     waves = ground(sine(40.0), 1e-3)
     rng = np.random.default_rng(1)
     places, corrector = rng.uniform(0.0, 8.0, (20, 2)) * [1.0, 0.1], rng.normal(size=(3, 4, 20))
-    near, times = waves.near(places), np.array([0.31, 0.35, 0.4])
-    exact = waves.motion("displacement", times, places, corrector)
-    found = np.einsum("tq,cdq->tdc", near.amplitudes(times, 0.0), near.motion(places, corrector))
-
-    np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
-    moving = waves.motion("velocity", times, places)
-    behind = near.amplitudes(times + 1e-4, 1e-4) @ near.velocities(1e-4).T
-    found = np.einsum("tq,cdq->tdc", behind, near.motion(places, np.zeros((3, 4, 20))))
-    np.testing.assert_allclose(found, moving, atol=1e-3 * np.abs(moving).max())
+    require_near(waves, np.array([0.31, 0.35, 0.4]), places, corrector, 1e-4, 1e-3)
+    # ties within 2 m on both sides of a joint, beside which each layer has its own gradients
+    places, corrector = rng.uniform([0.0, 10.0], [2.0, 14.0], (20, 2)), rng.normal(size=(3, 4, 20))
+    require_near(layers([SOFT, GENERAL], [12.0]), TIMES, places, corrector, 1e-3, 2e-4)
 
 
 def test_the_packing_moves_beyond_its_mean_strain() -> None:
@@ -89,11 +95,9 @@ def test_the_power_through_a_side_is_that_of_the_waves_that_run_inwards() -> Non
     ],
 )
 def test_what_is_refused(changes, problem: str) -> None:
-    with pytest.raises(CaseError) as error:
-        build(small(BELOW, changes=changes))
-    assert problem in str(error.value)
-    if "point" in problem:
-        assert "give wave.pulse.start = 0.05" in str(error.value)
+    found = "".join(problems_in(lambda: build(small(BELOW, changes=changes))))
+    assert problem in found
+    assert "point" not in problem or "give wave.pulse.start = 0.05" in found
 
 
 WAVELET = Ricker(type="ricker", amplitude=1.0, frequency=20.0, start=0.02)
@@ -102,48 +106,15 @@ SURFACE, MASS, GRAIN = 30.0, 30.0, 0.1
 SOFT = Medium.isotropic(1800.0, 500.0, 250.0)
 
 
-def layered(media: list[Medium], joints: list[float], mass: float = MASS) -> LayeredWaves:
-    """Ground whose incident wave moves along x and, less, along y at the height 0."""
-    half = WAVELET.model_copy(update={"amplitude": 0.5})
-    return rising_in_layers(media, joints, (SURFACE, mass), (WAVELET, half), 0.0, (0.0, 0.15), GRAIN)
-
-
-def test_equal_layers_under_a_wave_from_below_move_as_uniform_ground() -> None:
-    """Of any symmetry, with a mass on its surface and with correctors, and with the same power from below."""
-    waves, signals = [], []
-    for kind in ("sv", "p"):
-        incident = incident_wave(GENERAL, kind, 0.0)
-        part = incident.motion[0] + 0.5 * incident.motion[1]
-        signal = WAVELET.model_copy(update={"amplitude": part})
-        own = [incident, *reflected_waves(GENERAL, incident, SURFACE, MASS)]
-        waves, signals = waves + own, signals + [signal] * len(own)
-    uniform = GroundWaves(GENERAL, tuple(waves), tuple(signals), GRAIN)
-    equal = layered([GENERAL] * 3, [20.0, 8.0])
-    rng = np.random.default_rng(1)
-    places, corrector = rng.uniform(0.0, 30.0, (20, 2)), 0.1 * rng.normal(size=(3, 4, 20))
-    for of in ("displacement", "velocity"):
-        expected = uniform.motion(of, TIMES, places, corrector)
-        found = equal.motion(of, TIMES, places, corrector)
-        np.testing.assert_allclose(found, expected, atol=2e-5 * np.abs(expected).max())
-    edges, times = (0.0, 10.0, 2.0, 29.0), np.linspace(0.0, 0.15, 50)
-    expected = power_through("bottom", edges, uniform)(times)
-    np.testing.assert_allclose(power_through("bottom", edges, equal)(times), expected, atol=1e-4 * expected.max())
-    assert not power_through("left", edges, equal)(times).any()
-
-
 def test_ground_without_a_surface_sends_nothing_back() -> None:
     """Above the uppermost joint; below it runs what the joint reflects, (Z₁ − Z₂)/(Z₁ + Z₂) of the wave."""
     stiff = Medium.isotropic(2300.0, 1000.0, 500.0)
     waves = rising_in_layers([SOFT, stiff], [5.0], None, (WAVELET, None), 0.0, (0.0, 0.2), GRAIN)
     times, (below, above) = np.linspace(0.0, 0.2, 40), (2300.0 * 500.0, 1800.0 * 250.0)
     up, down = 5.0 / 500.0 + 2.0 / 250.0, 5.0 / 500.0 + 4.0 / 500.0
-    expected = np.stack(
-        [
-            2.0 * below / (below + above) * WAVELET.velocity(times - up),
-            WAVELET.velocity(times - 1.0 / 500.0) + (below - above) / (below + above) * WAVELET.velocity(times - down),
-        ],
-        axis=1,
-    )
+    passed = 2.0 * below / (below + above) * WAVELET.velocity(times - up)
+    back = (below - above) / (below + above) * WAVELET.velocity(times - down)
+    expected = np.stack([passed, WAVELET.velocity(times - 1.0 / 500.0) + back], axis=1)
     found = waves.motion("velocity", times, np.array([(0.0, 7.0), (0.0, 1.0)]))[:, :, 0]
     np.testing.assert_allclose(found, expected, atol=1e-5)
 
@@ -151,42 +122,50 @@ def test_ground_without_a_surface_sends_nothing_back() -> None:
 LIGHT = 3.0
 
 
-def layers(media: list[Medium], joints: list[float], kind: str = "sv", angle: float = -25.0) -> ObliqueLayers:
-    incident = incident_wave(media[-1], kind, angle).shifted(0.01)
+def layers(media: list[Medium], joints: list[float], kind: str = "sv") -> ObliqueLayers:
+    incident = incident_wave(media[-1], kind, -25.0).shifted(0.01)
     return oblique_in_layers(media, joints, (SURFACE, LIGHT), incident, WAVELET, (0.0, 0.2), GRAIN)
+
+
+def require_alike(equal, uniform: GroundWaves, box: tuple[float, ...], of: float, sides: tuple[str, ...]) -> None:
+    """Motion with correctors, and the power through sides, of layers of one medium and of uniform ground."""
+    rng = np.random.default_rng(1)
+    places, corrector = rng.uniform([-9.0, 0.0], 30.0, (20, 2)), 0.1 * rng.normal(size=(3, 4, 20))
+    for quantity in ("displacement", "velocity"):
+        expected = uniform.motion(quantity, TIMES, places, corrector)
+        found = equal.motion(quantity, TIMES, places, corrector)
+        np.testing.assert_allclose(found, expected, atol=of * np.abs(expected).max())
+    times = np.linspace(0.0, 0.15, 50)
+    for side in sides:
+        expected = power_through(side, box, uniform)(times)
+        np.testing.assert_allclose(power_through(side, box, equal)(times), expected, atol=1e-4 * np.abs(expected).max())
+
+
+def test_equal_layers_under_a_wave_from_below_move_as_uniform_ground() -> None:
+    """Of any symmetry, with a mass on its surface; the incident wave moves along x and, less, along y."""
+    waves, signals = [], []
+    for kind in ("sv", "p"):
+        incident = incident_wave(GENERAL, kind, 0.0)
+        part = incident.motion[0] + 0.5 * incident.motion[1]
+        own = [incident, *reflected_waves(GENERAL, incident, SURFACE, MASS)]
+        waves, signals = waves + own, signals + [WAVELET.model_copy(update={"amplitude": part})] * len(own)
+    both = (WAVELET, WAVELET.model_copy(update={"amplitude": 0.5}))
+    equal = rising_in_layers([GENERAL] * 3, [20.0, 8.0], (SURFACE, MASS), both, 0.0, (0.0, 0.15), GRAIN)
+    uniform = GroundWaves(GENERAL, tuple(waves), tuple(signals), GRAIN)
+    require_alike(equal, uniform, (0.0, 10.0, 2.0, 29.0), 2e-5, ("bottom",))
+    assert not power_through("left", (0.0, 10.0, 2.0, 29.0), equal)(TIMES).any()
 
 
 @pytest.mark.parametrize("kind", ["sv", "p"])
 def test_equal_layers_move_as_uniform_ground(kind: str) -> None:
-    """Of any symmetry, with correctors, with the same first arrival, and with the same power through all sides."""
+    """With the same first arrival, and with the same power through all sides."""
     incident = incident_wave(GENERAL, kind, -25.0).shifted(0.01)
     waves = (incident, *reflected_waves(GENERAL, incident, SURFACE, LIGHT))
-    uniform = GroundWaves(GENERAL, waves, (WAVELET,) * len(waves), GRAIN)
-    equal = layers([GENERAL] * 3, [20.0, 8.0], kind)
-    rng = np.random.default_rng(1)
-    places, corrector = rng.uniform([-9.0, 0.0], 30.0, (20, 2)), 0.1 * rng.normal(size=(3, 4, 20))
-    for of in ("displacement", "velocity"):
-        expected = uniform.motion(of, TIMES, places, corrector)
-        found = equal.motion(of, TIMES, places, corrector)
-        np.testing.assert_allclose(found, expected, atol=1e-5 * np.abs(expected).max())
-    edges, times = (0.0, 10.0, 15.0, 24.0), np.linspace(0.0, 0.2, 50)
-    for side in ("left", "right", "bottom", "top"):
-        expected = power_through(side, edges, uniform)(times)
-        np.testing.assert_allclose(power_through(side, edges, equal)(times), expected, atol=1e-4 * expected.max())
-    assert equal.arrives(places[places[:, 1] < 8.0]) == uniform.arrives(places[places[:, 1] < 8.0])
+    uniform, equal = (
+        GroundWaves(GENERAL, waves, (WAVELET,) * len(waves), GRAIN),
+        layers([GENERAL] * 3, [20.0, 8.0], kind),
+    )
+    require_alike(equal, uniform, (0.0, 10.0, 15.0, 24.0), 1e-5, ("left", "right", "bottom", "top"))
+    below = np.random.default_rng(1).uniform([-9.0, 0.0], [30.0, 8.0], (20, 2))
+    assert equal.arrives(below) == uniform.arrives(below)
     assert equal.arrives(np.array([(1.0, 9.0)])) <= uniform.arrives(np.array([(1.0, 9.0)])) + 1e-12
-
-
-def test_near_a_joint_each_layer_has_its_own_gradients() -> None:
-    """Ties within 2 m on both sides of a joint: motion, strain and velocities half a step behind."""
-    waves = layers([SOFT, GENERAL], [12.0])
-    rng = np.random.default_rng(2)
-    places, corrector = rng.uniform([0.0, 10.0], [2.0, 14.0], (20, 2)), rng.normal(size=(3, 4, 20))
-    near = waves.near(places)
-    exact = waves.motion("displacement", TIMES, places, corrector)
-    found = np.einsum("tq,cdq->tdc", near.amplitudes(TIMES, 0.0), near.motion(places, corrector))
-    np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
-    exact = waves.motion("velocity", TIMES, places)
-    behind = near.amplitudes(TIMES + 1e-3, 1e-3) @ near.velocities(1e-3).T
-    found = np.einsum("tq,cdq->tdc", behind, near.motion(places, 0.0 * corrector))
-    np.testing.assert_allclose(found, exact, atol=2e-4 * np.abs(exact).max())
