@@ -74,19 +74,13 @@ CASES = Path(__file__).parents[2] / "cases"
 def test_what_is_lacking_is_named_before_anything_runs(script: str, lacking: str, said: str, tmp_path) -> None:
     commands = tmp_path / "commands"
     commands.mkdir()
-    for name, text in {
-        "python3": f'case "$2" in *{lacking}*) exit 1;; esac',
-        "dembound": f'touch "{tmp_path}/ran"',
-    }.items():
+    tells, leaves = f'case "$2" in *{lacking}*) exit 1;; esac', f'touch "{tmp_path}/ran"'
+    for name, text in (("python3", tells), ("dembound", leaves)):
         (commands / name).write_text(f"#!/bin/sh\n{text}\n")
         (commands / name).chmod(0o755)
-    ended = subprocess.run(
-        ["bash", CASES / script, tmp_path / "results"],
-        env=os.environ | {"PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"},
-        capture_output=True,
-        text=True,
-    )
-
+    path = {"PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
+    words = ["bash", CASES / script, tmp_path / "results"]
+    ended = subprocess.run(words, env=os.environ | path, capture_output=True, text=True)
     assert ended.returncode == 1
     assert said in ended.stderr
     assert {path.name for path in tmp_path.iterdir()} == {"commands"}

@@ -149,7 +149,7 @@ def test_tables_of_disks_are_distinguished_from_unknown_ones() -> None:
     found = problems_of(f'[method]\ntype = "finite_difference"\n{of_disks}')
     assert any(line.startswith("bar.length: is missing") for line in found)
     for line, said in (
-        (problems_of(f"{GOOD}[[hole]]\n")[0], "hole: is not allowed here, as [bar] makes this a case of a bar; allowed: t"),
+        (problems_of(f"{GOOD}[[hole]]\n")[0], "hole: is not allowed here, as [bar] makes this a case of a bar; "),
         (problems_of(f"{GOOD}[ouptut]\n")[0], "ouptut: unknown table; allowed: title, bar, method, "),
         (found[0], "packing: is not allowed here, as [method] makes this a case of a bar; allowed: "),
     ):

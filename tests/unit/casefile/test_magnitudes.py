@@ -1,4 +1,4 @@
-"""Numbers and times that are probably in another unit, waves used for two quantities, and numbers beyond computation."""
+"""Numbers and times probably in another unit, waves used for two quantities, and numbers beyond computation."""
 
 import math
 

@@ -99,47 +99,31 @@ def test_cells_in_the_shortest_wavelength(spalling) -> None:
     assert cells_of_waves(build_bar(spalling()), step)["hit"][1] == cells_per_wavelength(3, courant_limit(3), 0.01)
 
 
-@pytest.fixture(scope="module")
-def exported(spalled_run, tmp_path_factory):
-    """The record of that bar with peaks, and the folder it has been written to."""
-    folder = tmp_path_factory.mktemp("vtu")
-    run = folder / "run.h5"
+def test_paraview_has_nodes_where_they_have_moved_and_lines_with_the_bonds_broken_across_them(spalled_run, tmp_path):
+    """With what the record holds, rounded to single precision."""
+    run, totals, peaks = tmp_path / "run.h5", [], np.linspace(0.0, 3.0, 41)
     run.write_bytes(spalled_run.read_bytes())
     with h5py.File(run, "r+") as file:
-        file["particles/peak_velocity"] = np.linspace(0.0, 3.0, 41)
-    write_paraview(run, folder / "paraview", Bars())
-    return folder / "paraview"
-
-
-@pytest.mark.parametrize("number", ["0003", "0011"])
-def test_nodes_stand_where_they_have_moved_with_what_the_record_holds(spalled_run, exported, number):
-    mesh = pyvista.read(exported / f"bar_{number}.vtu")
-    with h5py.File(spalled_run) as file:
-        particles, snapshot = file["particles"], file["snapshots"][number]
-        moved = snapshot["displacement"][:, 0]
-        assert np.abs(moved).max() > 0.0
-        np.testing.assert_array_equal(mesh.points[:, 0], particles["position"][:, 0] + moved)
-        np.testing.assert_array_equal(mesh.points[:, 1:], 0.0)
-        expected = {name: snapshot[name][:] for name in ("displacement", "velocity", "stress", "damage")}
-        expected |= {"volume": particles["volume"][:], "id": np.arange(41), "peakVelocity": np.linspace(0.0, 3.0, 41)}
-        expected = {name: values.astype(np.float32) for name, values in expected.items()}  # as they are written
-    assert set(mesh.point_data.keys()) == set(expected)
-    for name, values in expected.items():
-        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
-
-
-def test_lines_join_neighbours_and_know_how_many_bonds_across_them_have_broken(spalled_run, exported):
-    totals = []
-    with h5py.File(spalled_run) as file:
-        times, pairs = file["cracks/time"][:], file["cracks/particles"][:]
+        file["particles/peak_velocity"] = peaks
+    write_paraview(run, tmp_path / "paraview", Bars())
+    with h5py.File(run) as file:
+        particles, times, pairs = file["particles"], file["cracks/time"][:], file["cracks/particles"][:]
         for number, snapshot in file["snapshots"].items():
-            mesh = pyvista.read(exported / f"bar_{number}.vtu")
+            mesh, moved = pyvista.read(tmp_path / "paraview" / f"bar_{number}.vtu"), snapshot["displacement"][:, 0]
+            np.testing.assert_array_equal(mesh.points[:, 0], particles["position"][:, 0] + moved)
+            np.testing.assert_array_equal(mesh.points[:, 1:], 0.0)
+            expected = {name: snapshot[name][:] for name in ("displacement", "velocity", "stress", "damage")}
+            expected |= {"volume": particles["volume"][:], "id": np.arange(41), "peakVelocity": peaks}
+            assert set(mesh.point_data.keys()) == set(expected)
+            for name, values in expected.items():
+                np.testing.assert_array_equal(mesh.point_data[name], values.astype(np.float32), err_msg=name)
             assert set(mesh.celltypes) == {pyvista.CellType.LINE}
             np.testing.assert_array_equal(mesh.cell_connectivity.reshape(-1, 2), [[k, k + 1] for k in range(40)])
             broken = pairs[times <= snapshot.attrs["time"]]
             counted = [sum(first <= k < last for first, last in broken) for k in range(40)]
             np.testing.assert_array_equal(mesh.cell_data["brokenBonds"], counted)
             totals.append(sum(counted))
+    assert np.abs(moved).max() > 0.0
     assert totals[0] == 0 < totals[-1]
 
 
@@ -232,12 +216,11 @@ def outcome(spalls: list[dict], note: str | None = None, **more) -> list[str]:
     return bar_outcome(summary | more)
 
 
-@pytest.mark.parametrize(("count", "lines", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
-def test_of_many_spalls_the_first_are_reported(count: int, lines: int, last: str) -> None:
+@pytest.mark.parametrize(("count", "last"), [(3, []), (4, ["and 1 more"]), (12, ["and 9 more"])])
+def test_of_many_spalls_the_first_are_reported(count: int, last: list[str]) -> None:
     facts = outcome([{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)])
     assert facts[:3] == [f"spall at {place} m, 1 ms" for place in ("0", "0.1", "0.2")]
-    assert len(facts) == lines
-    assert facts[-1].startswith(last)
+    assert [line[:10] for line in facts[3:]] == last
 
 
 def test_a_bar_that_comes_off_an_end_that_holds_it_has_not_spalled() -> None:

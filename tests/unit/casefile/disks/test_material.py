@@ -176,7 +176,8 @@ def test_a_layer_may_be_damped_alone_and_waves_at_an_angle_are_refused(bar) -> N
         wave = {"type": "sv", "angle": angle, "wave": "pulse"}
         return {"boundary": around("outside", "left", "right", "bottom", "top"), "incident": wave, "motion.held": []}
 
-    for angle, said in ((10.0, "incident.angle: is 10, must be 0 in damped ground"), (0.0, "incident: needs one quality_")):
+    needs = "incident: needs one quality_"
+    for angle, said in ((10.0, "incident.angle: is 10, must be 0 in damped ground"), (0.0, needs)):
         assert [line for line in problems_in(lambda angle=angle: bar(layers | under(angle))) if line.startswith(said)]
     bar(Q | under(0.0))
 

@@ -42,7 +42,8 @@ def test_waves_must_be_defined_but_need_not_be_used() -> None:
 
 def test_periodic_sides_come_in_pairs() -> None:
     for one, other in (("left", "right"), ("top", "bottom")):
-        line, here = f'boundary.{one}.type: is "periodic", so boundary.{other} must be periodic too', side(one, "periodic")
+        here = side(one, "periodic")
+        line = f'boundary.{one}.type: is "periodic", so boundary.{other} must be periodic too'
         assert problems(here, side(other, "periodic")) == []
         assert problems(here) == problems(here, side(other, "fixed")) == [line]
         # what an invalid opposite side will be is not known yet
@@ -70,8 +71,8 @@ def test_half_masses_are_for_regular_edges() -> None:
 
 def test_a_free_field_is_for_left_and_right_and_its_column_has_two_ends() -> None:
     for name in ("bottom", "top"):
-        said = f'boundary.{name}.type: "free_field" is for left and right; its column is vertical and as high as the body'
-        assert problems(side(name, "free_field")) == [said]
+        said = '"free_field" is for left and right; its column is vertical and as high as the body'
+        assert problems(side(name, "free_field")) == [f"boundary.{name}.type: {said}"]
     assert problems(side("left", "free_field", "beta_p = 0.9")) == []
     column = side("right", "free_field")
     assert problems(column, side("left", "viscous"), side("bottom", "fixed")) == []

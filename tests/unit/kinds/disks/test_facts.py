@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pytest
 from disk_systems import LAMB
-from small_cases import SURROUNDED, small
+from scene_tables import point
+from small_cases import SURROUNDED, around, small
 
 from dembound.casefile import Case
 from dembound.disks.material.packing_waves import sent_back
@@ -70,38 +71,31 @@ def test_with_a_memory_a_strong_wave_is_no_warning_but_where_the_law_changes(bar
     if pressure is None:
         assert "stress of pulse" not in facts
     else:  # 2500·1000·0.5 Pa
-        assert facts["stress of pulse"] == (
-            f"ρcv = 1.25 MPa, above the confining stress of {pressure}; "
-            "in tension contacts open, and the law changes to linearpbond"
+        said = (
+            f"ρcv = 1.25 MPa, above the confining stress of {pressure}; in tension contacts open, and the law changes "
         )
-
-
-UNTIL = "linearpbond, elastic until a contact opens, slips or closes or a bond yields"
-SLIP = "contacts slip at 0.5 of their normal force"
+        assert facts["stress of pulse"] == f"{said}to linearpbond"
 
 
 @pytest.mark.parametrize(
-    ("material", "law", "strength", "share"),
+    ("material", "strength", "share"),
     [
         (
-            {"pb_coh": 2e6, "pb_fa": 30.0, "fric": 0.5, "contact_share": 0.3},
-            UNTIL,
-            f"bonds unbreakable in tension, 2 MPa + σ·tan 30° in shear; {SLIP}",
+            {"pb_coh": 2e6, "pb_fa": 30.0, "contact_share": 0.3},
+            "bonds unbreakable in tension, 2 MPa + σ·tan 30° in shear",
             "70",
         ),
-        ({"contact_share": 1.0, "fric": 0.5}, UNTIL, f"no bonds; {SLIP}", "0"),
+        ({"contact_share": 1.0}, "no bonds", "0"),
     ],
 )
-def test_the_law_is_reported_with_strength_and_stiffness_in_tension(bar, material, law, strength, share) -> None:
-    case = bar({f"material.{key}": value for key, value in {"law": "linearpbond", **material}.items()})
+def test_the_law_is_reported_with_strength_and_stiffness_in_tension(bar, material, strength, share) -> None:
+    law = {"law": "linearpbond", "fric": 0.5, **material}
+    case = bar({f"material.{key}": value for key, value in law.items()})
     facts = facts_of(case)
-
-    assert (facts["law"], facts.get("strength")) == (law, strength)
-    assert ("once it begins" in "".join(Disks().not_estimated(case))) == ("elastic until" in law)
-    assert ("tension" in facts) == (share is not None)
-    assert share is None or facts["tension"].startswith(
-        f"in tension the stiffness falls to {share} %, as contacts open"
-    )
+    assert facts["law"] == "linearpbond, elastic until a contact opens, slips or closes or a bond yields"
+    assert facts["strength"] == f"{strength}; contacts slip at 0.5 of their normal force"
+    assert "once it begins" in "".join(Disks().not_estimated(case))
+    assert facts["tension"].startswith(f"in tension the stiffness falls to {share} %, as contacts open")
 
 
 def test_loads_and_the_static_stage_are_reported(bar) -> None:
@@ -114,10 +108,8 @@ def test_loads_and_the_static_stage_are_reported(bar) -> None:
     # 40 disks of 625 kg; two of them in each of two columns in the region
     assert facts["load weight"] == "(250, 0) kN/m on 40 particles, steady"
     assert facts["load tap"] == "(1, 0) MN/m on 4 particles, times wave pulse"
-    assert (
-        facts["static stage"]
-        == "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to an unbalanced force ratio of 1e-05"
-    )
+    stage = "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to an unbalanced force ratio of 1e-05"
+    assert facts["static stage"] == stage
     assert facts["static sides"] == "left fixed"
     own = facts_of(bar({"static": static, "material.law": "linearpbond"}))["static stage"]
     assert own.endswith("ratio of 1e-05, of 1e-07 once contacts slide or open")
@@ -144,25 +136,28 @@ def test_facts_of_the_waves() -> None:
     assert facts["less exact monitors"] == "near the corners where layers begin: (-3, -3), (15, -3) m"
 
 
+STRAIGHT = "SV, straight up, with the velocity of wave pulse at (0, 0) m; "
+
+
 @pytest.mark.parametrize(
     ("changes", "wave", "reflected"),
     [
-        ({"incident.angle": -20.0}, ("20° from the vertical to the left, ", " at (12, 0) m, "), ""),
         (
-            {"incident.angle": 0.0},
-            ("SV, straight up, with the velocity of wave pulse at (0, 0) m; ",),
-            "SV at 0° with 1 of the amplitude; critical from 45° on",
+            {"incident.angle": -20.0},
+            "20° from the vertical to the left, with the velocity of wave pulse at (12, 0)",
+            "",
         ),
+        ({"incident.angle": 0.0}, STRAIGHT, "SV at 0° with 1 of the amplitude; critical from 45° on"),
         (
             {"boundary.top": {"type": "outside"}},
-            ("at (0, 0) m, at 1414.2 m/s along x; reaches",),
-            "none, as the ground has no surface",
+            "at (0, 0) m, at 1414.2 m/s along x; reaches",
+            "none, as the ground ha",
         ),
     ],
 )
-def test_other_waves_are_reported(changes, wave: tuple[str, ...], reflected: str) -> None:
+def test_other_waves_are_reported(changes, wave: str, reflected: str) -> None:
     facts = dict(incident_facts(build(small(CASE, changes=changes))))
-    assert all(words in facts["incident wave"] for words in wave)
+    assert wave in facts["incident wave"]
     assert reflected in facts["reflected waves"]
 
 
@@ -210,8 +205,7 @@ def test_reflections_are_those_of_the_profile(case) -> None:
 def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
     """Bricks of 10 m do so from 36 Hz on, as do forces along both axes and waves from below along y."""
     short = {"type": "cosine", "amplitude": 1.0, "period": 0.05}
-    below = {side: {"type": "outside"} for side in ("left", "right")}
-    below["bottom"] = {"type": "outside", "wave_s": "pulse"}
+    below = around("outside") | {"bottom": {"type": "outside", "wave_s": "pulse"}}
     of_forces = with_changes(case, {"packing": RANDOM, "wave": {"pulse": short}})
     for changed, axes in ((of_forces, (0, 1)), (with_changes(of_forces, {"load": [], "boundary": below}), (1,))):
         scene = build(changed)
@@ -237,10 +231,7 @@ LASTING = {"wave": {"pulse": STAYS}, "outside.margin": 1}
     [
         ({"outside.element": 20.0}, "outside.element: elements of 20 m return short waves, about 0.8"),
         ({"outside.layers": 2}, "outside.layers: 2 elements of order 4 return about 0.7 % of the displacement"),
-        (
-            {"outside.reflection": 0.01},
-            STRONG,
-        ),
+        ({"outside.reflection": 0.01}, STRONG),
         ({"outside.element": 4.0}, SMALL),
         (LASTING, f"{MISSING}than outside.accuracy = 0.1 %; 300 m within the layers are enough, now 120 m"),
     ],
@@ -254,10 +245,8 @@ def test_poor_settings_have_one_line_each(case, changes: dict, start: str) -> No
 
 
 def test_a_margin_too_small_below_the_surface(case) -> None:
-    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
-    deep = {"ground.size": [100.0, 150.0], "packing.origin": [30.0, 0.0], "boundary": sides}
-    deep |= {"load": [{"name": "f", "position": [50.5, 9.5], "force": [0.0, -1e6], "wave": "pulse"}]}
-
+    deep = {"ground.size": [100.0, 150.0], "packing.origin": [30.0, 0.0], "load": [point((0.0, -1e6), (50.5, 9.5))]}
+    deep["boundary"] = around("outside", "left", "right", "bottom", "top")
     assert warnings_of(case, **deep) == []
     (line,) = warnings_of(case, **deep, **{"outside.element": 5.0, "outside.margin": 2})
     start = "outside.margin: waves that the free surface sends back run along layers 10 m beside the disks, and about "
@@ -276,20 +265,16 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
 
 
 def test_a_low_row_of_elements_has_a_warning(case) -> None:
-    thin = {
-        "outside.accuracy": 0.01,
-        "layer": [{"thickness": 8.0, "density": 1800.0, "s_wave_speed": 350.0}, {"name": "seam", "thickness": 2.0}, {}],
-    }
-    (line,) = warnings_of(case, **thin)
+    soil = {"thickness": 8.0, "density": 1800.0, "s_wave_speed": 350.0}
+    layers = [soil, {"name": "seam", "thickness": 2.0}, {}]
+    (line,) = warnings_of(case, **{"outside.accuracy": 0.01, "layer": layers})
     assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
 
 
 def test_elements_too_large_beside_a_load(case) -> None:
     slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
-    near = {"load": [{"name": "f", "position": [20.5, 4.5], "force": [0.0, -1e6], "wave": "pulse"}]}
-
+    near = {"load": [point((0.0, -1e6), (20.5, 4.5))]}
     assert warnings_of(case, **slow) == []
     (line,) = warnings_of(case, **slow, **near)
-    assert line.startswith(
-        "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
-    )
+    said = "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
+    assert line.startswith(said)

@@ -14,12 +14,7 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.mesh import continuum_mesh
-from dembound.kinds.disks.summary import (
-    asked_stress,
-    describe_static,
-    disk_outcome,
-    summarise_disks,
-)
+from dembound.kinds.disks.summary import asked_stress, describe_static, disk_outcome, summarise_disks
 from dembound.motion.simulation import Simulation
 from dembound.results.vtk import write_paraview
 from dembound.running import plan, preflight
@@ -144,13 +139,6 @@ def test_only_what_applies_is_reported() -> None:
     ]
 
 
-@pytest.fixture(scope="module")
-def exported(small_run, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("vtu") / "paraview"
-    write_paraview(small_run, folder, Disks())
-    return folder
-
-
 def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Points and point data of a snapshot, written out column by column, and rounded to single precision."""
     particles, snapshot = file["particles"], file["snapshots"][number]
@@ -167,16 +155,15 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "displacement": moved,
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"][:],
-        "column": np.zeros(len(velocity)),
-        "nbCracks": np.zeros(len(velocity)),
-        "damage": np.zeros(len(velocity)),
+        **dict.fromkeys(("column", "nbCracks", "damage"), np.zeros(len(velocity))),
     }
     return flat + moved, {name: values.astype(np.float32) for name, values in data.items()}
 
 
-def test_meshio_and_vtk_read_back_what_the_record_holds(small_run, exported):
+def test_meshio_and_vtk_read_back_what_the_record_holds(small_run, tmp_path):
     """Places in double and fields in single precision, one vertex per disk."""
-    mesh, of_vtk = meshio.read(exported / "particles_0001.vtu"), pyvista.read(exported / "particles_0001.vtu")
+    write_paraview(small_run, tmp_path, Disks())
+    mesh, of_vtk = meshio.read(tmp_path / "particles_0001.vtu"), pyvista.read(tmp_path / "particles_0001.vtu")
     with h5py.File(small_run) as file:
         points, data = expected(file, "0001")
     assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
@@ -223,25 +210,17 @@ def test_contacts_are_lines_between_the_centres_of_their_disks(cracked_run, tmp_
             np.testing.assert_array_equal(mesh.cell_data["bonded"], contacts["bonded"])
 
 
-@pytest.fixture(scope="module")
-def exported_continuum(surrounded_run, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("vtu") / "paraview"
-    write_paraview(surrounded_run, folder, Disks())
-    return folder
-
-
-def test_vtk_reads_one_quadrilateral_per_cell(surrounded_run, exported_continuum) -> None:
-    number = "0001"
-    mesh = pyvista.read(exported_continuum / f"continuum_{number}.vtu")
+def test_vtk_reads_one_quadrilateral_per_cell(surrounded_run, tmp_path) -> None:
+    write_paraview(surrounded_run, tmp_path, Disks())
+    mesh = pyvista.read(tmp_path / "continuum_0001.vtu")
     with h5py.File(surrounded_run) as file:
         columns = {name: values[:] for name, values in file["continuum"].items()}
-        fields = {name: values[:] for name, values in file[f"snapshots/{number}/continuum"].items()}
-    moved, velocity, stress = fields["displacement"], fields["velocity"], fields["stress"]
-    points = np.zeros((len(moved), 3))
-    points[:, :2] = columns["position"] + moved[:, :2]
-    linear, shift, tensor = np.zeros_like(points), np.zeros_like(points), np.zeros((len(points), 6))
-    linear[:, :2], shift[:, :2] = velocity[:, :2], moved[:, :2]
-    tensor[:, 0], tensor[:, 1], tensor[:, 3] = stress.T  # VTK's order: xx, yy, zz, xy, yz, xz
+        fields = {name: values[:] for name, values in file["snapshots/0001/continuum"].items()}
+    velocity, tensor = fields["velocity"], np.zeros((len(fields["velocity"]), 6))
+    tensor[:, 0], tensor[:, 1], tensor[:, 3] = fields["stress"].T  # VTK's order: xx, yy, zz, xy, yz, xz
+    points, linear, shift = (
+        np.pad(each[:, :2], ((0, 0), (0, 1))) for each in (columns["position"], velocity, fields["displacement"])
+    )
     data = {
         "linVelVec": linear,
         "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
@@ -252,7 +231,7 @@ def test_vtk_reads_one_quadrilateral_per_cell(surrounded_run, exported_continuum
     }
     assert set(mesh.celltypes) == {pyvista.CellType.QUAD}
     np.testing.assert_array_equal(mesh.cell_connectivity.reshape(-1, 4), columns["cell"])
-    np.testing.assert_array_equal(mesh.points, points)
+    np.testing.assert_array_equal(mesh.points, points + shift)
     assert mesh.point_data.keys() == list(data)
     for name, values in data.items():
         np.testing.assert_array_equal(mesh.point_data[name], values.astype(np.float32), err_msg=name)
@@ -263,9 +242,8 @@ def test_the_last_cells_of_a_periodic_continuum_reach_its_first_nodes(axis: int,
     """The first nodes are repeated a period on, with all their data, so that no gap is left."""
     along = (columns, 4) if axis == 0 else (4, columns)
     layer = Around(bottom=2) if axis == 0 else Around(left=2)
-    mesh = Mesh.uniform(
-        order=3, element=(2.0, 1.5), cells=along, origin=(1.0, -2.0), layer=layer, periodic=(axis == 0, axis == 1)
-    )
+    ring = {"origin": (1.0, -2.0), "layer": layer, "periodic": (axis == 0, axis == 1)}
+    mesh = Mesh.uniform(order=3, element=(2.0, 1.5), cells=along, **ring)
     data = {"position": mesh.positions, "cell": mesh.node_cells, "element": mesh.rectangles, "node": mesh.nodes}
     data["absorbs"] = np.any(mesh.depth > 0.0, axis=1)
     rng = np.random.default_rng(0)
