@@ -572,6 +572,21 @@ def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, titles
     assert (tmp_path / "gauge.png").read_bytes().startswith(PNG)
 
 
+def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:
+    dembound("new", "--from", "rock_bar", "bar.toml")
+    few = ("--set", "output.pictures=false", "--set", "output.snapshots=1")
+    assert dembound("run", "bar.toml", *few).code == 0
+    told = dembound("gauge", "results/bar", "--free-end", "end", "--spall", 0.907)
+    assert (told.code, told.err) == (0, "")
+    rows = [cells(line) for line in told.out.splitlines()[3:9]]
+    assert rows[5][:2] == ["strength of the bar (MPa)", "10"]
+    # it breaks at 10 MPa from 0.905 to 0.909 m, by bonds of up to 3 mm: all that is told is known to some 5 mm, over
+    # which the tension beside the end changes by 12 MPa · 2 · 5 mm/(2740 m/s · 80 µs)
+    known = 12.0 * 2.0 * 0.005 / (2740.0 * 80e-6)
+    assert float(rows[2][1]) == pytest.approx(10.0, abs=known)
+    assert float(rows[4][1]) == pytest.approx(10.0, abs=known)
+
+
 @pytest.fixture
 def rod(spalling, tmp_path) -> Callable[..., None]:
     """Writes rod.toml, a small bar, with keys changed."""

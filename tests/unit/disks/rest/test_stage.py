@@ -196,6 +196,12 @@ def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None
     assert (np.abs(momenta.sum(axis=(1, 2))) < 1e-13 * np.abs(momenta).sum(axis=(1, 2))).all()
 
 
+def test_stress_along_a_periodic_axis_is_there_from_the_start(bar) -> None:
+    stress = (-1e6, -2e6, 0.4e6)
+    settled = settle(scene(bar, boundary=WRAP, static={"stress": stress}, **{"packing.size": [1.0, 1.0]}))
+    np.testing.assert_allclose(settled.stress, stress, rtol=1e-12)
+
+
 SHEAR = 0.4e6
 STRESS = {"ratio": 1e-8, "stress": [-1e6, -1e6, SHEAR]}
 LAW = {"material.law": "linearpbond", "material.fric": 2.0, "packing.size": [8.0, 8.0]}
