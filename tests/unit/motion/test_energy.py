@@ -164,6 +164,20 @@ def borne(edges: list[Edge], force: np.ndarray, known: dict | None = None) -> np
 LEFT, BOTTOM = edge("left", [0, 1, 2], [1.0, 2.0, 3.0]), edge("bottom", [2, 3, 4], [3.0, 1.0, 1.0])
 
 
+def test_a_uniform_stress_is_taken_apart_at_a_corner() -> None:
+    stress = np.array([[-3.0, 0.5], [0.5, -7.0]])
+    force = np.zeros((2, 5))
+    for each, outward in ((LEFT, [-1.0, 0.0]), (BOTTOM, [0.0, -1.0])):
+        force[:, each.nodes] += np.outer(stress @ outward, each.diameters)
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[18.0, -3.0], [-2.5, 35.0]], rtol=1e-14)
+
+
+def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
+    force = np.zeros((2, 5))
+    force[:, 2] = [10.0, 20.0]
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)
+
+
 @pytest.mark.parametrize("recorded", [0.0, 4.0])
 def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together(recorded: float) -> None:
     """Also where a side is recorded with another force than acts by it: of the 4 N of node 2 by the left side."""
