@@ -148,8 +148,11 @@ def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: l
     assert np.array_equal(some.columns, every.columns[steps])
     assert [entry.time for entry in some.entries] == [step * other.time_step for step in steps]
     assert some.columns.tolist() == [[getattr(entry, field.name) for field in fields(Entry)] for entry in some.entries]
-    assert np.array_equal(other.state.displacement, each.state.displacement)
+    for field in ("displacement", "peaks"):
+        assert np.array_equal(getattr(other.state, field), getattr(each.state, field))
     assert np.array_equal(np.concatenate(records), record)
+    # held motions stay zero, the others do not
+    assert [each.state.displacement[axis].any() for axis in (0, 1)] == [True, False]
 
 
 def edge(side: str, nodes: list[int], diameters: list[float]) -> Edge:

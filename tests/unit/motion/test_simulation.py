@@ -69,6 +69,18 @@ def test_all_falls_alike_beside_free_fields(bar) -> None:
     np.testing.assert_allclose(record[:, :, 4], falling, rtol=1e-9, atol=1e-18)
 
 
+def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(bar) -> None:
+    scene = build(bar())
+    simulation = Simulation(scene, 2.0 * choose_step(scene)[1])
+    with pytest.raises(RunError, match=r"grew without bound: at t = [\d.]+ s near \([\d.]+, [\d.]+\) m") as caught:
+        simulation.run(100_000)
+
+    # twice the limit multiplies by −7 − √48 = −13.9 each step: 308 decimal powers are gone within 271 steps
+    assert simulation.state.step <= 2 * DiskScene.block
+    assert f"t = {simulation.time:g} s" in str(caught.value)
+    assert caught.value.exit_code == 3
+
+
 @pytest.mark.parametrize(("axis", "sign"), [(0, -1.0), (1, 1.0)])
 def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign: float) -> None:
     scene = build(bar())
