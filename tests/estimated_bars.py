@@ -147,6 +147,12 @@ def _reflected(case: BarCase, side: str) -> float:
     return 0.0 if end.is_artificial else -1.0 if 0 in end.prescribed(0) else 1.0
 
 
+def true_errors(case: BarCase, recorded: History) -> dict[str, float]:
+    """Quantity -> RMS error over RMS at a monitor, beside the exact motion."""
+    true = exact(case, recorded)
+    return {q: float(np.linalg.norm(v[:, 0] - true[q]) / np.linalg.norm(v[:, 0])) for q, v in recorded.values.items()}
+
+
 def _finer(case: BarCase, recorded: History) -> dict[str, np.ndarray]:
     """Motion by finite differences on finer nodes; a right end that absorbs is farther away by half of all ways."""
     bar = case.bar

@@ -1,7 +1,7 @@
 """Tables of small cases for several folders of tests; `small` makes cases from them."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +127,30 @@ GROUND: Tables = {
 """A lattice of 30 × 20 disks in a continuum, wide enough for a slope, and a wave without motion."""
 
 
+FULL: Tables = {
+    "title": "full",
+    "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1e3, "kratio": 1.0, "damp": 0.1, "law": "linearpbond"}
+    | {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0, "locked_in": 1e6, "geometry": "reference", "elastic_start": True},
+    "motion": {"held": ["y"]},
+    "boundary": {"left": {"type": "viscous_input", "wave_p": "w", "beta_p": 1.0}, "right": {"type": "fixed"}},
+    "static": {"stress": [0.0, 0.0, 1.0], "ratio": 1e-4, "damp": 0.5, "max_steps": 10}
+    | {"boundary": {"left": {"type": "fixed"}, "bottom": {"type": "roller"}}},
+    "wave": {
+        "w": {"type": "cosine", "amplitude": 1.0, "period": 1.0, "start": 0.0},
+        "s": {"type": "sine_burst", "amplitude": 1.0, "frequency": 1.0, "cycles": 2, "taper": True},
+    },
+    "load": [
+        {"name": "a", "force": [1.0, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "w"},
+        {"name": "b", "acceleration": [1.0, 0.0], "position": [0.0, 0.0]},
+    ],
+    "monitor": [{"name": "a", "position": [0.0, 0.0]}],
+    "run": {"duration": 1.0, "time_step": 0.1, "safety": 0.5},
+    "output": {"history_interval": 0.0, "energy_interval": 0.0, "snapshots": 1, "pictures": False},
+}
+"""A case with keys of every kind."""
+
+
 def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None = None) -> Case:
     """The case of tables, with some keys changed; its name has no other characters than a folder may have."""
     case = loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))
@@ -135,11 +159,21 @@ def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None
 
 def problems_of(text: str, folder: Path = Path()) -> list[str]:
     """All lines the text of a case is refused with; none if it is not."""
+    return problems_in(lambda: loads(text, folder))
+
+
+def problems_in(make: Callable[[], object]) -> list[str]:
+    """All lines that making a case or a scene is refused with; none if it is not."""
     try:
-        loads(text, folder)
+        make()
     except CaseError as error:
         return error.problems
     return []
+
+
+def around(kind: str | dict[str, Any], *sides: str) -> Tables:
+    """Tables of sides of one type: left, right and bottom, or those named."""
+    return {side: {"type": kind} if isinstance(kind, str) else kind for side in sides or ("left", "right", "bottom")}
 
 
 def rows(table: str) -> list[tuple[str, ...]]:

@@ -15,6 +15,7 @@ import pytest
 import tomli_w
 from hypothesis import given
 from hypothesis import strategies as st
+from small_cases import FULL, GRAINS, PUSHED, SURROUNDED, Tables
 
 from dembound import kinds
 from dembound.casefile import Case
@@ -124,91 +125,34 @@ KEYS = {key: st.one_of([of_schema(value) for value in values]) for key, values i
 """Allowed values of the keys of each name, in any table."""
 
 
-SMALL = """
-packing = { pattern = "A", size = [10.0, 2.5], radius = 0.25 }
-boundary.left = { type = "free_field" }
-boundary.right = { type = "viscoelastic_input", wave_p = "push", distance = 3.0 }
-boundary.bottom = { type = "viscous_input", wave_s = "shake" }
-static = { stress = [-1e6, -1e6, 0.0], boundary = { bottom = { type = "fixed" } } }
-wave.push = { type = "cosine", amplitude = 0.5, period = 0.01 }
-wave.shake = { type = "sine_burst", amplitude = 0.2, frequency = 100.0, cycles = 2 }
-hole = [{ name = "tunnel", type = "circle", centre = [5.0, 1.0], radius = 0.4 }]
-monitor = [{ name = "front", position = [2.4, 1.2] }]
-run = { duration = 0.01 }
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-law = "linearpbond"
-pb_ten = 1e6
-pb_coh = 2e6
-pb_fa = 30.0
-fric = 0.5
-[[load]]
-name = "blow"
-force = [1e3, 0.0]
-position = [5.0, 2.5]
-wave = "push"
-[[load]]
-name = "blast"
-pressure = 1e5
-hole = "tunnel"
-wave = "push"
-"""
-
-RANDOM = """
-packing = { pattern = "B", bricks = [2, 1], radius = 0.25, radius_ratio = 1.5, brick = [5.0, 5.0] }
-material = { density = 2500.0, emod = 1e9, pb_emod = 1e9 }
-boundary.right = { type = "viscous" }
-load = [{ name = "weight", acceleration = [0.0, -9.81] }]
-run = { duration = 0.01, until = "duration" }
-chart = { vary = { "packing.seed" = [0, 1] }, choice = [{ name = "fine", set = { "packing.radius" = 0.2 } }] }
-sweep = { action = "calibrate", vary = { packing = { seed = "1:3" } } }
-"""
-
-SURROUND = """
-packing = { pattern = "A", size = [12.0, 6.0], radius = 0.5 }
-material = { density = 2500.0, p_wave_speed = 1000.0, kratio = 2.0, damp = 0.0 }
-boundary = { left = { type = "outside" }, right = { type = "outside" }, bottom = { type = "outside" } }
-incident = { type = "sv", angle = 20.0, wave = "ramp", point = [0.0, 0.0] }
-wave.ramp = { type = "constant", amplitude = 0.1, rise = 0.05, start = 0.01 }
-monitor = [{ name = "middle", position = [6.5, 3.5] }]
-output = { history_interval = 1e-3, side_interval = 1e-3, energy_interval = 1e-3, snapshots = 2 }
-sweep = { processes = 2, vary = { "material.density" = [2000.0, 3000.0] } }
-[outside]
-order = 3
-element = 3.0
-accuracy = 1e-2
-margin = 1
-layers = 2
-reflection = 1e-3
-shift = 0.3
-delay = 0.1
-damping = 0.1
-[run]
-duration = 0.02
-safety = 0.8
-checkpoint = 10.0
-until = "silent"
-silent_level = 1e-2
-silent_for = 0.005
-[chart]
-repeats = 2
-choice = [{ name = "coarse", set = { "packing.radius" = 1.0, "outside.element" = 2.0 } }]
-"""
-
-
-PUSHED_ROW = """
-packing = { pattern = "A", bricks = [40, 6], radius = 0.5 }
-material = { density = 2500.0, p_wave_speed = 1000.0, contact_share = 1.0 }
-motion = { held = ["y", "rotation"] }
-boundary.left = { type = "velocity", wave_p = "push" }
-boundary.right = { type = "viscous", beta_p = 0.8 }
-wave.push = { type = "ricker", amplitude = 0.1, frequency = 10.0, start = 0.1 }
-monitor = [{ name = "middle", position = [10.0, 5.0] }]
-run = { duration = 0.3, time_step = 1e-4 }
-"""
-
-SOUND = [tomllib.loads(text) for text in (SMALL, RANDOM, SURROUND, PUSHED_ROW, *map(starting_point, names()))]
+HOLLOW: Tables = FULL | {
+    "run": {"duration": 0.01},
+    "hole": [{"name": "tunnel", "type": "circle", "centre": [5.0, 2.0], "radius": 0.4}],
+    "load": [*FULL["load"], {"name": "blast", "pressure": 1e5, "hole": "tunnel", "wave": "w"}],
+    "material": {key: value for key, value in FULL["material"].items() if key != "locked_in"},
+    "motion": {},
+    "boundary": {
+        "left": {"type": "free_field"},
+        "right": {"type": "viscoelastic_input", "wave_p": "w", "distance": 3.0},
+        "bottom": {"type": "viscous_input", "wave_s": "s"},
+    },
+}
+CHOICES: Tables = GRAINS | {
+    "material": {"density": 2500.0, "emod": 1e9, "pb_emod": 1e9},
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    "chart": {"vary": {"packing.seed": [0, 1]}, "choice": [{"name": "fine", "set": {"packing.radius": 0.2}}]},
+    "sweep": {"action": "calibrate", "processes": 2, "vary": {"packing": {"seed": "1:3"}}},
+}
+WAVED: Tables = SURROUNDED | {
+    "incident": {"type": "sv", "angle": 20.0, "wave": "ramp", "point": [0.0, 0.0]},
+    "wave": {"ramp": {"type": "constant", "amplitude": 0.1, "rise": 0.05, "start": 0.01}},
+    "output": {"history_interval": 1e-3, "side_interval": 1e-3, "energy_interval": 1e-3, "snapshots": 2},
+    "outside": {"order": 3, "element": 3.0, "accuracy": 1e-2, "margin": 1, "layers": 2, "reflection": 1e-3}
+    | {"shift": 0.3, "delay": 0.1, "damping": 0.1},
+    "run": {"duration": 0.02, "safety": 0.8, "checkpoint": 10.0, "until": "silent"}
+    | {"silent_level": 1e-2, "silent_for": 0.005},
+}
+SOUND = [HOLLOW, CHOICES, WAVED, PUSHED, *map(tomllib.loads, map(starting_point, names()))]
 
 
 def places(table: Any, place: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:

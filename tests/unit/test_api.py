@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 import tomli_w
+from scene_tables import ROCK, lattice, monitors
 
 import dembound
 from dembound.results.reader import text_of
@@ -27,11 +28,11 @@ TABLES = {
     "output": {"pictures": False, "snapshots": 2},
 }
 PLAIN = TABLES | {
-    "packing": {"pattern": "A", "size": [5.0, 1.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
-    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}},
+    "packing": lattice(5.0, 1.0, 0.5),
+    "material": ROCK,
+    "boundary": TABLES["boundary"] | {"right": {"type": "viscous"}},
     "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.002}},
-    "monitor": [{"name": "middle", "position": [2.6, 0.3]}],
+    "monitor": monitors(middle=(2.6, 0.3)),
 }
 
 
@@ -87,17 +88,13 @@ def test_results_are_those_of_the_record(results) -> None:
     with h5py.File(results.folder / "run.h5") as file:
         for name in ("time", "velocity", "displacement"):
             assert np.array_equal(results.histories["middle"][name], file["histories/middle"][name][:])
-        assert [shot.attributes["time"] for shot in results.snapshots] == [
-            group.attrs["time"] for group in file["snapshots"].values()
-        ]
+        times = [group.attrs["time"] for group in file["snapshots"].values()]
+        assert [shot.attributes["time"] for shot in results.snapshots] == times
         assert np.array_equal(results.snapshots[-1]["velocity"], file["snapshots/0001/velocity"][:])
         assert np.array_equal(results.boundaries["right"]["peak_velocity"], file["boundaries/right/peak_velocity"][:])
         assert results.case == text_of(file.attrs["case"])
-    assert (
-        results.attributes["steps"]
-        == results.summary["steps"]
-        == round(results.energy["time"][-1] / results.attributes["time_step"]) + 1
-    )
+    steps = round(results.energy["time"][-1] / results.attributes["time_step"]) + 1
+    assert results.attributes["steps"] == results.summary["steps"] == steps
     assert results.laws == [("elastic", 0.0)]
     assert dembound.loads(results.case) == dembound.case(**TABLES)
 
@@ -143,9 +140,8 @@ def test_runs_are_estimated_if_their_case_asks_for_it_and_warn_as_python_does(tm
     assert "middle" in longer.summary["error_estimate"]["monitors"]
     budget = dembound.estimate(found.folder)
     assert budget.total("middle", "velocity").value > 0.0
-    assert re.fullmatch(
-        r"<Budget, errors of the rock: .+ of the velocity at middle .*; monitors: middle>", repr(budget)
-    )
+    said = r"<Budget, errors of the rock: .+ of the velocity at middle .*; monitors: middle>"
+    assert re.fullmatch(said, repr(budget))
 
 
 def test_one_side_or_all_are_calibrated() -> None:
@@ -182,17 +178,15 @@ def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
 
 
 def test_names_that_results_do_not_have_are_answered_with_those_they_have(results) -> None:
-    for ask, said in (
-        (lambda: results.histories["midle"], 'monitor: is "midle", must be one of middle (did you mean middle?)'),
-        (lambda: results.boundaries["up"], 'side: is "up", must be one of bottom, left, right, top'),
-        (
-            lambda: results.histories["middle"]["velocty"],
-            'array: is "velocty", must be one of displacement, time, velocity (did you mean velocity?)',
-        ),
-        (lambda: results.summary["step"], 'entry: is "step", must be one of '),
+    known = "displacement, time, velocity (did you mean velocity?)"
+    for group, name, said in (
+        (results.histories, "midle", 'monitor: is "midle", must be one of middle (did you mean middle?)'),
+        (results.boundaries, "up", 'side: is "up", must be one of bottom, left, right, top'),
+        (results.histories["middle"], "velocty", f'array: is "velocty", must be one of {known}'),
+        (results.summary, "step", 'entry: is "step", must be one of '),
     ):
         with pytest.raises(dembound.NameMissingError) as caught:
-            ask()
+            group[name]
         assert str(caught.value).startswith(said)
         assert isinstance(caught.value, KeyError)
 

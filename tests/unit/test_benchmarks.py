@@ -14,21 +14,16 @@ import traffic
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "benchmarks"
 COMMANDS = (
-    "rates",
-    "compare_revisions",
-    "lammps_bar",
-    "bar_rate",
-    "estimate_bars",
-    "continuum_rate",
-    "pack_rate",
-    "memory",
-    "reductions",
-    "reflection_packets",
-    "estimates",
-    "golden",
-    "single_edits",
-    "record_interpolation",
-    "soil_on_rock",
+    *("rates", "compare_revisions", "lammps_bar", "bar_rate", "estimate_bars", "continuum_rate", "pack_rate", "memory"),
+    *(
+        "reductions",
+        "reflection_packets",
+        "estimates",
+        "golden",
+        "single_edits",
+        "record_interpolation",
+        "soil_on_rock",
+    ),
 )
 
 

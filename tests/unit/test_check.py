@@ -34,11 +34,8 @@ def test_a_run_until_silence_is_announced_with_its_times(bar) -> None:
 
 
 def test_the_estimate_says_what_it_is_without(bar) -> None:
-    law = {"material.law": "linearpbond"}
-    for changes, without in (
-        (law, " the additional time of linearpbond once it begins,"),
-        ({**law, "material.elastic_start": False}, ""),
-    ):
+    law, later = {"material.law": "linearpbond"}, " the additional time of linearpbond once it begins,"
+    for changes, without in ((law, later), ({**law, "material.elastic_start": False}, "")):
         reported = check(bar(changes))[0]["estimated time"]
         assert reported.endswith(f" with 1 thread, without building,{without} pictures")
     reported = check(bar({"static": {"stress": [-1e6, -2e6, 0.0]}}))[0]["estimated time"]

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from small_cases import PUSHED, SPALLING, Tables, small
+from scene_tables import ISOTROPIC, lattice
+from small_cases import PUSHED, SPALLING, Tables, around, small
 
 from dembound.casefile.unlikely import meaning_of, unlikely
 from dembound.check import check
@@ -21,8 +22,8 @@ from dembound.table import Table
 ROOT = Path(__file__).parents[2]
 
 LATTICE: Tables = PUSHED | {
-    "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+    "packing": lattice(10.0, 5.0, 0.5),
+    "material": ISOTROPIC,
     "wave": {"push": {"type": "cosine", "amplitude": 0.05, "period": 0.1}},
     "boundary": {"left": {"type": "viscous_input", "wave_p": "push", "beta_p": 1.0, "beta_s": 1.0}},
     "run": {"duration": 0.2},
@@ -92,7 +93,6 @@ DISKS = [
      "is 0.7 while waves run: of a burst 94 % are left after one wavelength at 0.1, 49 % at 0.3, 0.2 % at 0.7"),
     ("packing", {"pattern": "A", "size": [10_000.0, 5000.0], "radius": 250.0},
      "packing.radius: is 250 m, where particles have"),
-    ("wave.push.amplitude", 50.0, "wave.push: particles move at up to 50 m/s, P waves along x run at"),
     ("wave.push.start", 200.0, "wave.push: reaches 0 % of its peak, which comes at 200.05 s, within the run of 0.2 s"),
     ("run.duration", 200.0, "the run of 200 s is 2,000 times as long; are all times in s and lengths in m?"),
     ("output.history_interval", 0.05,
@@ -105,8 +105,8 @@ DISKS = [
 ]  # fmt: skip
 
 ANGLED = LATTICE | {
-    "packing": {"pattern": "A", "size": [10.0, 10.0], "radius": 0.5},
-    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "packing": lattice(10.0, 10.0, 1.0),
+    "boundary": around("outside"),
     "incident": {"type": "sv", "angle": 20.0, "wave": "push"},
     "outside": {"element": 5.0, "margin": 1, "layers": 2},
 }

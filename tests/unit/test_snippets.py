@@ -67,13 +67,8 @@ def parse(command: Any, arguments: list[str], name: str = "dembound") -> None:
 
 
 def test_whole_cases_are_accepted() -> None:
-    whole = [
-        text
-        for page in PAGES
-        if GALLERY not in page.parents
-        for text in blocks(page, "toml")
-        if "[run]" in text.splitlines()
-    ]
+    texts = [text for page in PAGES if GALLERY not in page.parents for text in blocks(page, "toml")]
+    whole = [text for text in texts if "[run]" in text.splitlines()]
     assert len(whole) > 5
     for text in whole:
         loads(text)
@@ -98,6 +93,5 @@ def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) 
 def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_case(page: Path) -> None:
     originals = [START / page.name, *(ROOT / "cases").glob("*.toml")]
     texts = [path.read_text() for path in originals if path.is_file()]
-    assert [
-        code for code in [*blocks(page, "toml"), *blocks(page, "python")] if not any(code in text for text in texts)
-    ] == []
+    codes = [*blocks(page, "toml"), *blocks(page, "python")]
+    assert not [code for code in codes if not any(code in text for text in texts)]

@@ -1,9 +1,13 @@
 """Fourier spectra and their smoothing, response spectra, and transfer functions."""
 
+import math
+
 import numpy as np
 import pytest
 
 from dembound import spectra
+from dembound.damping import fitted
+from dembound.roots import root
 from dembound.spectra import (
     BANDWIDTH,
     FADED,
@@ -29,9 +33,8 @@ def test_a_spectrum_has_the_energy_of_its_history(count):
     if 3 * count % 2 == 0:
         both_signs[-1] = 1.0
     # Parseval; rounding of the sums of some hundred squares
-    np.testing.assert_allclose(
-        np.sum(values**2) * STEP, np.sum(both_signs * np.abs(spectrum) ** 2) * frequency[1], rtol=1e-13
-    )
+    energy = np.sum(both_signs * np.abs(spectrum) ** 2) * frequency[1]
+    np.testing.assert_allclose(np.sum(values**2) * STEP, energy, rtol=1e-13)
 
 
 def test_a_gaussian_has_its_known_spectrum():
@@ -159,3 +162,48 @@ def test_no_ratio_where_the_input_has_no_energy():
     raw = found.frequency[~np.isnan(found.ratio)]
     assert clear[0] <= raw[0]
     assert raw[-1] <= clear[-1]
+
+
+BAND, MIDDLE = (0.3, 10.0), 3.0**0.5
+
+
+@pytest.mark.parametrize("quality", [5.0, 100.0])
+@pytest.mark.parametrize(("count", "error"), [(2, 0.08), (3, 0.01), (4, 0.002)])
+def test_q_is_nearly_constant_over_the_band(quality: float, count: int, error: float) -> None:
+    found = fitted(quality, BAND, MIDDLE, count)
+
+    assert abs(quality / found.quality(np.geomspace(*BAND, 500)) - 1.0).max() < error
+    assert found.range[0] < quality < found.range[1]
+
+
+@pytest.mark.parametrize("frequency", [0.3, MIDDLE, 10.0])
+def test_the_speed_holds_at_its_frequency(frequency: float) -> None:
+    """C = 1/Re √(ρ/M), so M/M₀ there has Re (M/M₀)^(−1/2) = 1; beyond all mechanisms M is M_U."""
+    found = fitted(20.0, BAND, frequency, 3)
+
+    assert np.real(found.relative_modulus(frequency) ** -0.5) == pytest.approx(1.0, rel=1e-12)
+    assert abs(found.relative_modulus(1e9)) == pytest.approx(found.unrelaxed, rel=1e-7)
+
+
+def test_memories_respond_as_the_modulus() -> None:
+    """To e^{iωnΔt} they answer Σ g(1 + z)/(1 − e z), z = e^{−iωΔt}, which is Σ w/(1 + iωτ) to second order in Δt/τ."""
+    found = fitted(20.0, BAND, MIDDLE, 3)
+    frequency = np.geomspace(0.1, 20.0, 30)
+    exact = 1.0 - found.relative_modulus(frequency) / found.unrelaxed
+    errors = []
+    for step in (2e-4, 1e-4):
+        (e, g), z = found.per_step(step), np.exp(-2j * np.pi * frequency * step)[:, None]
+        errors.append(abs((g * (1.0 + z) / (1.0 - e * z)).sum(axis=1) - exact).max())
+
+    assert errors[1] == pytest.approx(errors[0] / 4.0, rel=0.05)
+    assert errors[1] < 1e-6
+
+
+@pytest.mark.parametrize("sought", [0.0, 0.3, 1.0, 2.0])
+def test_the_root_of_a_line_is_its_own(sought) -> None:
+    assert root(lambda x: sought - x, -1.0, 3.0) == pytest.approx(sought, rel=1e-15, abs=1e-300)
+
+
+def test_the_sign_changes_at_the_root_found() -> None:
+    found = root(math.cos, 0.0, 3.0)
+    assert math.cos(math.nextafter(found, 0.0)) > 0.0 >= math.cos(found)

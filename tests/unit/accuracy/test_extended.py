@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_tables import grains, monitors
+from small_cases import around
 
 from dembound.accuracy.judge import extended
 from dembound.disks.scene import build
@@ -17,7 +19,7 @@ BASE = {"type": "viscous_input", **WAVE}
 FIELD = {"motion.held": [], "run.duration": 0.02, "packing.size": [10.0, 5.0]}
 HOLE = {"name": "tunnel", "type": "circle", "centre": [6.0, 3.0], "radius": 0.8}
 BLOW = {"name": "blow", "force": [1e5, 0.0], "position": [3.1, 2.2], "wave": "pulse"}
-REGION = {**BLOW, "name": "wide", "position": None, "region": [1.0, 1.0, 3.0, 2.0]}
+REGION = {"name": "wide", "force": [1e5, 0.0], "region": [1.0, 1.0, 3.0, 2.0], "wave": "pulse"}
 SPRINGS = {"type": "viscoelastic", "source": [3.25, 2.25]}
 
 
@@ -26,10 +28,13 @@ def field(bar):
     """Makes cases: a field with a hole, two loads and sides that are all artificial but the top."""
 
     def make(changes=None):
-        region = {key: value for key, value in REGION.items() if value is not None}
         boundary = {"left": {"type": "viscous"}, "right": SPRINGS, "bottom": {"type": "roller"}}
-        own = {"hole": [HOLE], "load": [BLOW, region], "boundary": boundary}
-        own["monitor"] = [{"name": "a", "position": [2.1, 4.0]}, {"name": "b", "position": [9.9, 0.1]}]
+        own = {
+            "hole": [HOLE],
+            "load": [BLOW, REGION],
+            "boundary": boundary,
+            "monitor": monitors(a=(2.1, 4.0), b=(9.9, 0.1)),
+        }
         return bar({**FIELD, **own, **(changes or {})}, "field")
 
     return make
@@ -42,9 +47,7 @@ def at(scene, nodes):
 
 @pytest.mark.parametrize("pattern", ["A", "B", "C"])
 def test_all_stays_at_its_place_on_its_particles(field, pattern) -> None:
-    random = {"pattern": pattern, "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 2.5]}
-    if pattern == "C":
-        random["edge_radius"] = 0.26
+    random = grains(10.0, 5.0, 0.5, 5.0, 0, pattern) | {"brick": [5.0, 2.5]}
     case = field({} if pattern == "A" else {"packing": random})
     found = extended(case)
     small, large = build(case), build(checked(found.case))
@@ -85,8 +88,7 @@ def test_other_sides_move_where_the_case_calls_them_artificial(bar) -> None:
 
 def test_sides_that_are_physical_stay(bar) -> None:
     found = extended(bar({"boundary.left": GRIP, "run.duration": 0.05}))
-    tall = extended(bar({"motion.held": ["x"], "boundary": {"bottom": GRIP, "top": {"type": "viscous"}}, **{}}))
-
+    tall = extended(bar({"motion.held": ["x"], "boundary": {"bottom": GRIP, "top": {"type": "viscous"}}}))
     wide, high = found.case.packing.extent
     assert high == 1.0
     # to the middle at 4.75 m and back within 0.05 s, over the side at X: 2X − 4.75 = 50 m and the precursor,
@@ -113,12 +115,11 @@ def test_a_scene_large_enough_is_left_alone_and_one_far_too_large_refused(bar) -
     assert unwatched == pytest.approx(watched + 0.5 * (10.0 - 4.75), abs=0.5)
     with pytest.raises(CaseError, match=r"run\.duration: is 10 s.* only in a scene of 50..(\.5)? m × 1 m with 20,1"):
         extended(bar({"boundary.left": GRIP, "run.duration": 10.0}), most=1000)
-    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
     instead = r".* packing\.size = \[30, 5\], packing\.origin = \[-4, 2\], no \[ground\]"
     said = r"^ground\.size: the scene cannot be extended, .* --reference finest," + instead
     ground = {"ground.size": [30.0, 5.0], "ground.origin": [-4.0, 2.0], "packing.origin": [6.0, 2.0]}
     with pytest.raises(CaseError, match=said):
-        extended(bar({**FIELD, "boundary": sides, "monitor": [], **ground}))
+        extended(bar({**FIELD, "boundary": around("outside"), "monitor": [], **ground}))
 
 
 def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:
@@ -132,7 +133,7 @@ def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:
 
 
 def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
-    sides = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
+    sides = around("free_field", "left", "right") | {"bottom": BASE}
     plain = {**FIELD, "boundary": sides, "run.duration": 0.03}
     without, hollow = (bar({**plain, **changes}) for changes in ({}, {"hole": [HOLE]}))
 
@@ -182,14 +183,10 @@ def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar) -> None:
     slope = {"name": "slope", "type": "polygon", "points": [[4.0, 11.0], [6.0, 6.0], [11.0, 6.0], [11.0, 11.0]]}
     weight = {"name": "weight", "acceleration": [0.0, -9.81]}
     blow = BLOW | {"position": [2.25, 9.75]}
-    held = {"bottom": {"type": "fixed"}, "left": {"type": "roller"}, "right": {"type": "roller"}}
-    changes = {
-        **{"packing.size": [10.0, 10.0], "motion.held": [], "run.duration": 0.02, "monitor": []},
-        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
-        "hole": [slope | {"stage": "after"}],
-        "load": [blow, weight],
-        "static": {"boundary": held},
-    }
+    held = around("roller", "left", "right") | around("fixed", "bottom")
+    changes = {"packing.size": [10.0, 10.0], "motion.held": [], "run.duration": 0.02, "monitor": []}
+    changes |= {"boundary": around("outside"), "hole": [slope | {"stage": "after"}], "load": [blow, weight]}
+    changes |= {"static": {"boundary": held}}
     larger = extended(bar(changes))
     made, (left, bottom, right, _) = build(larger.case), larger.case.packing.box
 

@@ -57,13 +57,20 @@ def test_a_repeat_with_the_same_step_is_the_same_run(torn) -> None:
     assert same.changes == {name: {"velocity": 0.0, "displacement": 0.0} for name in ("front", "back")}
 
 
-def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(repeat.TemporaryDirectory, "__init__", _in(tmp_path, repeat.TemporaryDirectory.__init__))
+@pytest.fixture
+def beside(tmp_path, monkeypatch) -> Path:
+    """The folder in which second runs are made, and removed afterwards."""
+    make = repeat.TemporaryDirectory.__init__
+    monkeypatch.setattr(repeat.TemporaryDirectory, "__init__", lambda self, **more: make(self, **more, dir=tmp_path))
+    return tmp_path
+
+
+def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, beside) -> None:
     before = sorted(torn.parent.iterdir())
     found = estimate_results(torn, repeat=True)
 
     assert sorted(torn.parent.iterdir()) == before
-    assert not any(tmp_path.iterdir())
+    assert not any(beside.iterdir())
     entry = json.loads((torn / "summary.json").read_text(), parse_constant=pytest.fail)["error_estimate"]
     assert entry["repeat"] == found.repeat.summary()
     own, other = entry["repeat"]["this_run"], entry["repeat"]["second_run"]
@@ -76,8 +83,7 @@ def test_a_repeat_is_in_the_estimate_and_leaves_no_run_behind(torn, tmp_path, mo
         assert len(file["repeat/time"]) == len(file["repeat/position"]) == other["cracks"]
 
 
-def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(repeat.TemporaryDirectory, "__init__", _in(tmp_path, repeat.TemporaryDirectory.__init__))
+def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, beside, monkeypatch) -> None:
 
     def half_written(case, folder):
         (folder / "torn.partial").mkdir()
@@ -88,13 +94,8 @@ def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, tmp_path, monk
     with pytest.raises(RunError):
         estimate_results(torn, repeat=True)
 
-    assert not any(tmp_path.iterdir())
+    assert not any(beside.iterdir())
     assert {path: path.read_bytes() for path in torn.iterdir() if path.is_file()} == before
-
-
-def _in(folder, make):
-    """A temporary directory made in a folder."""
-    return lambda self, **options: make(self, **options, dir=folder)
 
 
 def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:

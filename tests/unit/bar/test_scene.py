@@ -2,8 +2,13 @@
 
 import numpy as np
 import pytest
+from small_cases import problems_in
 
 from dembound.bar.scene import build_bar, entering_pressure
+from dembound.errors import CaseError
+from dembound.machine import Memory
+from dembound.motion import memory
+from dembound.motion.simulation import Simulation
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -26,12 +31,9 @@ def test_nodes_stand_from_end_to_end_with_half_a_mass_there(spalling) -> None:
     np.testing.assert_allclose(scene.inertia, scene.mass * 0.025**2 / 12.0, rtol=4 * EPS)
     assert scene.free.tolist() == [1.0, 0.0, 0.0]
     assert scene.monitors == {"start": 0, "below": 20, "above": 21, "end": 40}
-    assert list(scene.edges) == ["left", "right"]
-    for side, node, place in (("left", 0, 0.0), ("right", 40, 1.0)):
-        assert scene.edges[side].nodes.tolist() == [node]
-        assert scene.edges[side].positions.tolist() == [[place, 0.0]]
-        assert scene.edges[side].diameter_sum_ratio == 1.0
-        assert scene.edges[side].length == pytest.approx(SECTION, rel=2 * EPS)
+    for edge, side, node, place in zip(scene.edges.values(), ("left", "right"), (0, 40), (0.0, 1.0), strict=True):
+        assert (edge.side, edge.nodes.tolist(), edge.positions.tolist()) == (side, [node], [[place, 0.0]])
+        assert (edge.diameter_sum_ratio, edge.length) == (1.0, pytest.approx(SECTION, rel=2 * EPS))
 
 
 @pytest.mark.parametrize("nodes", [1, 3, 41])
@@ -89,3 +91,105 @@ def test_a_dashpot_takes_its_part_of_a_load_and_lets_its_wave_in(spalling, side,
     np.testing.assert_allclose(entering_pressure(case, side, TIME, loads=False), wave * SHAPE, rtol=1e-12, atol=1e-6)
     np.testing.assert_allclose(entering_pressure(case, side, TIME), (wave + load) * SHAPE, rtol=1e-12, atol=1e-6)
     assert entering_pressure(case, side, np.zeros((2, 3))).shape == (2, 3)
+
+
+NODES = {"left": 9, "right": 14}
+METHODS = {
+    "finite differences": {"type": "finite_difference"},
+    "peridynamics": {"type": "peridynamics", "horizon": 3},
+    "corrected ends": {"type": "peridynamics", "horizon": 3, "corrected_ends": True},
+}
+
+
+def ends(**keys) -> dict:
+    return {f"boundary.{side}": {"type": "matched_layer", "nodes": nodes} | keys for side, nodes in NODES.items()}
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_motion_without_decay_is_that_of_a_longer_bar(spalling, method: dict) -> None:
+    """Noise in the bar, until its waves have returned from the ends of the longer bar: five steps of three nodes.
+
+    To the rounding of sums of some ten forces in a step. Stresses within a horizon of a layer include the layer's
+    bonds, at the same step.
+    """
+    common = {"method": method, "bar.strength": 1e12, "load": []}
+    short = build_bar(spalling(common | ends(reflection=1.0 - 1e-15)))  # with which nothing decays
+    longer = build_bar(spalling(common | {"bar.length": 0.025 * (40 + sum(NODES.values()))}))
+    step, places = 0.5 * longer.step_limit(), np.array([1, 2, 38, 39])
+    noise = np.random.default_rng(2).standard_normal(short.count)
+    moved, stresses = [], []
+    for scene, first in ((short, 0), (longer, NODES["left"])):
+        simulation = Simulation(scene, step, places + first)
+        velocity = np.zeros((3, scene.count))
+        velocity[0, first : first + short.count] = noise
+        simulation.state.velocity = velocity
+        simulation.state.displacement = step * velocity  # from zero a step ago, as the bonds of a layer at rest
+        stresses.append(simulation.advance(4)[:, :, 6])
+        moved.append(simulation.state.displacement[0, first : first + short.count])
+    np.testing.assert_allclose(moved[0], moved[1], rtol=0.0, atol=60 * 2.3e-16 * np.abs(moved[1]).max())
+    np.testing.assert_allclose(stresses[0], stresses[1], rtol=0.0, atol=1e-12 * np.abs(stresses[1]).max())
+    assert np.abs(stresses[1]).max() > 0.0
+
+
+RANGES = [{"name": "striker", "length": 0.25, "velocity": 5.0}, {"name": "rock", "length": 0.75}]
+
+
+LONG = {"method": {"type": "peridynamics", "horizon": 5}}
+MOVING = {"bar": {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": RANGES}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        (LONG, "boundary.left.nodes: is 9, must be at least 10, twice method.horizon"),
+        (MOVING, "boundary.left.type: its layer is at rest, but range striker beside it has a velocity"),
+    ],
+)
+def test_layers_that_cannot_be_are_refused(spalling, changes: dict, problem: str) -> None:
+    assert problems_in(lambda: spalling(changes | ends())) == [problem]
+
+
+def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
+    said = r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "
+    with pytest.raises(CaseError, match=said):
+        build_bar(spalling({"bar.spacing": 1e-6}))
+
+
+UNIT = 0.025 / 1000.0
+"""Δx/c, s."""
+
+
+@pytest.mark.parametrize("kind", ["finite_difference", "peridynamics", "switch", "patch"])
+def test_a_run_may_be_cut_anywhere_and_every_break_is_reported_once(spalling, kind: str) -> None:
+    method = (
+        {"type": kind}
+        | ({"horizon": 3} if kind != "finite_difference" else {})
+        | ({"reach": 1} if kind == "patch" else {})
+    )
+
+    scene = build_bar(spalling({"method": method}))
+    whole, run = (Simulation(scene, 0.9 * UNIT, np.array([20, 35])) for _ in range(2))
+    (part,) = whole.system.parts
+    records, reported = [], []
+    record = whole.advance(5)
+    alive = 40 + 39 + 38 if kind == "peridynamics" else 40
+    assert part.bond_updates == 5 * alive  # what pulls
+    record = np.concatenate([record, whole.advance(65)])
+    for steps in (1, 9, 30, *30 * [1]):  # whatever step it is that ends a block
+        records.append(run.advance(steps))
+        reported.append(run.system.take_cracks(run.state.step))
+        assert run.state.step - steps <= reported[-1].step.min(initial=run.state.step - steps)
+        assert reported[-1].step.max(initial=0) < run.state.step
+    assert np.array_equal(np.concatenate(records), record)
+    assert np.array_equal(run.state.displacement, whole.state.displacement)
+    assert whole.state.laws == run.state.laws
+
+    assert len(run.system.take_cracks(run.state.step).step) == 0
+    steps, pairs = part.bonds.breaks(0)
+    assert len(steps) > 0
+    assert np.array_equal(np.concatenate([cracks.step for cracks in reported]), steps)
+    assert np.array_equal(np.concatenate([cracks.pair for cracks in reported]), pairs)
+    for cracks in reported:
+        np.testing.assert_allclose(cracks.position[:, 0], 0.025 * cracks.pair.mean(axis=1), rtol=8 * EPS)
+        assert not cracks.shear.any()

@@ -10,9 +10,11 @@ import pytest
 import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from dembound.casefile.edit import commented, edited, rewritten
 from dembound.casefile.keys import Place, lines_of, statements_of
+from dembound.casefile.tables import Chart, Sweep, range_of
 
 ODD = """\
 #:schema ./dembound.schema.json
@@ -136,12 +138,15 @@ def test_comments_above_a_key_replace_their_kind() -> None:
 
 
 def test_line_ends_and_a_missing_last_one_remain() -> None:
-    assert edited("[a]\r\nx = 1 # c\r\n", {"a.y": 2, "a.x": 3}) == "[a]\r\nx = 3 # c\r\ny = 2\r\n"
-    assert edited("a = 1", {"a": 2}) == "a = 2"
-    assert edited("a = 1", {"b": 2}) == "a = 1\nb = 2\n"
-    assert edited("# top\n[t]\n", {"a": 1}) == "# top\na = 1\n\n[t]\n"
-    assert edited("", {"a.b": {}}) == "[a.b]\n"
-    assert edited(ODD, {"boundary.right.beta_p": 0.7138, "run": None, "monitor.a.name": "a"}) == ODD
+    for text, changes, expected in (
+        ("[a]\r\nx = 1 # c\r\n", {"a.y": 2, "a.x": 3}, "[a]\r\nx = 3 # c\r\ny = 2\r\n"),
+        ("a = 1", {"a": 2}, "a = 2"),
+        ("a = 1", {"b": 2}, "a = 1\nb = 2\n"),
+        ("# top\n[t]\n", {"a": 1}, "# top\na = 1\n\n[t]\n"),
+        ("", {"a.b": {}}, "[a.b]\n"),
+        (ODD, {"boundary.right.beta_p": 0.7138, "run": None, "monitor.a.name": "a"}, ODD),
+    ):
+        assert edited(text, changes) == expected
 
 
 KEYS = st.sampled_from(["a", "b", "name", "size", "c d", "é.x"])
@@ -233,3 +238,25 @@ def untouched(text: str, before: Any, requested: Any) -> Iterator[list[str]]:
             old, new = old[key], new.get(key) if isinstance(new, Mapping) else None
         if repr_of(old) == repr_of(new):
             yield [line.rstrip("\n") for line in lines[each.begin : each.end]]
+
+
+def test_ranges_include_both_ends_and_other_values_are_none() -> None:
+    ranges = {"1:4": [1, 2, 3, 4], "7:7": [7], "-2:2:2": [-2, 0, 2], "0:10:4": [0, 4, 8]}
+    assert {text: range_of(text) for text in ranges} == ranges
+    for value in ("1", "1:", "1:2:3:4", "1.5:2", "a:b", 3, [1, 2], True):
+        assert range_of(value) is None
+    for text in ("4:1", "1:4:0", "1:1000000"):
+        with pytest.raises(ValueError, match=text):
+            range_of(text)
+
+
+@pytest.mark.parametrize("table", [Chart, Sweep])
+def test_lists_are_found_by_dotted_key(table) -> None:
+    found = table(vary={"packing": {"seed": "1:3", "radius": [0.25]}, "run.safety": [0.5, 0.9]})
+    assert found.vary == {"packing.seed": [1, 2, 3], "packing.radius": [0.25], "run.safety": [0.5, 0.9]}
+
+
+@pytest.mark.parametrize("values", [0.5, [], "many", "3:1"])
+def test_what_is_no_list_is_refused(values) -> None:
+    with pytest.raises(ValidationError, match=r"must have a list of values|range without a number"):
+        Sweep(vary={"run.safety": values})

@@ -1,37 +1,22 @@
-"""No error text of a library is shown, whatever value a key has."""
+"""Messages about keys: no text of a library, advice on names of other codes, and the JSON schema for editors."""
 
 import re
+import tomllib
 from functools import reduce
 from operator import getitem
+from pathlib import Path
 from typing import Any
 
 import pytest
 import tomli_w
-from small_cases import problems_of
+from jsonschema import Draft202012Validator
+from small_cases import FULL, PUSHED, SPALLING, problems_of, rows
 
+from dembound.casefile.foreign import BY_NAME, NAMES, TYPE_OF
+from dembound.casefile.json_schema import DRAFT, json_schema
 from dembound.casefile.messages import allowed, counted, show
-
-FULL: dict[str, Any] = {
-    "title": "full",
-    "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1e3, "kratio": 1.0, "damp": 0.1, "law": "linearpbond"}
-    | {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0, "locked_in": 1e6, "geometry": "reference", "elastic_start": True},
-    "motion": {"held": ["y"]},
-    "boundary": {"left": {"type": "viscous_input", "wave_p": "w", "beta_p": 1.0}, "right": {"type": "fixed"}},
-    "static": {"stress": [0.0, 0.0, 1.0], "ratio": 1e-4, "damp": 0.5, "max_steps": 10}
-    | {"boundary": {"left": {"type": "fixed"}, "bottom": {"type": "roller"}}},
-    "wave": {
-        "w": {"type": "cosine", "amplitude": 1.0, "period": 1.0, "start": 0.0},
-        "s": {"type": "sine_burst", "amplitude": 1.0, "frequency": 1.0, "cycles": 2, "taper": True},
-    },
-    "load": [
-        {"name": "a", "force": [1.0, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "w"},
-        {"name": "b", "acceleration": [1.0, 0.0], "position": [0.0, 0.0]},
-    ],
-    "monitor": [{"name": "a", "position": [0.0, 0.0]}],
-    "run": {"duration": 1.0, "time_step": 0.1, "safety": 0.5},
-    "output": {"history_interval": 0.0, "energy_interval": 0.0, "snapshots": 1, "pictures": False},
-}
+from dembound.kinds import SCHEMAS
+from dembound.starting import names, starting_point
 
 # of every TOML kind one that is wrong nearly everywhere
 WRONG: list[Any] = [-7, -7.5, 10**30, float("nan"), True, "", "wrong", [], [1], ["x", "x"], {}, {"a": 1}]
@@ -86,3 +71,157 @@ def test_values_are_shown_as_the_file_spells_them() -> None:
     assert show("x" * 100) == '"' + "x" * 56 + "..."
     assert [counted(count, "disk") for count in (0, 1, 1200)] == ["0 disks", "1 disk", "1,200 disks"]
     assert allowed({"type": "string", "minLength": 1}) == "a text no shorter than 1"
+
+
+DOCS = Path(__file__).parents[3] / "docs"
+DISKS = PUSHED | {"static": {"stress": [-1e6, -1e6, 0.0]}}
+
+
+def about(tables: dict, path: str, key: str) -> str:
+    """The line about a foreign key in one of the tables."""
+    changed = tables | ({path: tables.get(path, {}) | {key: 1.0}} if path else {key: 1.0})
+    (line,) = problems(changed)
+    assert line.startswith(f"{path}.{key}: " if path else f"{key}: ")
+    return line.partition(": ")[2]
+
+
+SAID = """
+material | kn | write emod, Pa: the normal stiffness of a contact is k_n = emod
+material | pb_ks | write pb_kratio = pb_kn/pb_ks
+material | pb_mcf | there is none: bonds break as with pb_mcf = 1
+material | E | write young and poisson, of the body, or emod and pb_emod
+static | damping | write damp
+packing | radius_max | write radius: disks of pattern "A" are equal, those of "B" and "C" also have radius_ratio
+bar | young | write youngs_modulus, Pa
+run | mass_scaling | there is none: it would change the speed of waves
+static | in_situ | write stress = [sxx, syy, sxy]
+ | gravity | give [[load]] an acceleration
+ | walls | [boundary.bottom] and other sides have a type
+bar | dx | write spacing, m
+"""
+
+
+@pytest.mark.parametrize(("path", "key", "said"), rows(SAID))
+def test_a_name_of_another_code_is_answered_by_what_to_write(path: str, key: str, said: str) -> None:
+    line = about(SPALLING if path == "bar" else DISKS, path, key)
+    assert line.startswith(f"unknown {'key' if path else 'table'}; {said}")
+    assert "did you mean" not in line
+
+
+def test_a_name_that_other_codes_have_in_several_tables_is_answered_by_the_keys_of_each() -> None:
+    hole = {"name": "h", "type": "circle", "centre": [5.0, 1.0], "radius": 1.0, "diameter": 2.0}
+    wave = {"type": "ricker", "amplitude": 1.0, "frequency": 5.0, "stress": 1.0}
+    for tables, said in (
+        (
+            PUSHED | {"boundary": {"right": {"type": "viscous", "stress": 1.0}}},
+            "give wave_p or wave_s a wave of the in",
+        ),
+        (PUSHED | {"hole": [hole]}, "write radius, m"),
+        (PUSHED | {"wave": PUSHED["wave"] | {"w": wave}}, "write amplitude, m/s"),
+        (SPALLING | {"quiet": {}}, "each end has a type"),
+        (SPALLING | {"walls": {}}, "allowed: title, bar"),
+    ):
+        assert any(f"; {said}" in line for line in problems(tables)), said
+
+
+def test_only_a_near_key_is_guessed() -> None:
+    for key in ("stiffnes_of_all", "colour", "kz", "dampened", "pbx"):
+        line = about(DISKS, "material", key)
+        assert line.startswith("unknown key; allowed: density, ")
+        assert "did you mean" not in line
+    near = {"densty": "density", "p_wavespeed": "p_wave_speed", "pb_tenn": "pb_ten", "kratoi": "kratio"}
+    for key, meant in near.items():
+        assert about(DISKS, "material", key).endswith(f"(did you mean {meant}?)")
+
+
+def _keys(schema: Any) -> set[str]:
+    """All keys of all tables of a schema, and all names of types."""
+    if isinstance(schema, list):
+        return set().union(*map(_keys, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = {*schema.get("properties", {}), *(str(name) for name in (schema.get("const"), *schema.get("enum", ())))}
+    return own.union(*map(_keys, schema.values()))
+
+
+def test_every_advice_names_keys_and_types_that_there_are() -> None:
+    known = _keys(json_schema(SCHEMAS))
+    for advice in NAMES.values():
+        for key, text in advice:
+            assert key == "" or key in known
+            assert text
+            for named in re.findall(r"\bwrite (\w+)", text):
+                assert named in known, text
+            for page in re.findall(r"see docs: (\S+)", text):
+                assert (DOCS / f"{page}.md").is_file()
+    assert set(TYPE_OF.values()) <= known
+    assert len(BY_NAME) == sum(map(len, NAMES))  # no name has two answers
+
+
+def test_a_type_of_another_code_is_answered_by_the_type_here() -> None:
+    ends = {"quiet": '(here "viscous")', "PML": '(here "outside")', "viscos": "(did you mean viscous?)", "soft": '"'}
+    for side, said in ends.items():
+        (line,) = problems(PUSHED | {"boundary": {"right": {"type": side}}})
+        assert line.startswith(f'boundary.right.type: is "{side}", must be one of ')
+        assert line.endswith(said)
+
+
+SHIPPED = sorted((Path(__file__).parents[3] / "cases").rglob("*.toml"))
+
+
+@pytest.fixture(scope="module")
+def schema() -> dict:
+    return json_schema(SCHEMAS)
+
+
+@pytest.fixture(scope="module")
+def wrong(schema):
+    """Lists what the schema finds wrong with a TOML text: where, and what."""
+    validator = Draft202012Validator(schema)
+
+    def find(text: str) -> list[tuple[str, str]]:
+        return [(error.json_path, error.message) for error in validator.iter_errors(tomllib.loads(text))]
+
+    return find
+
+
+def test_it_is_a_schema_of_its_draft(schema) -> None:
+    assert schema["$schema"] == DRAFT
+    Draft202012Validator.check_schema(schema)
+
+
+def test_shipped_cases_and_starting_points_are_valid(wrong) -> None:
+    for text in [*(path.read_text(encoding="utf-8") for path in SHIPPED), *map(starting_point, names())]:
+        assert wrong(text) == []
+
+
+MISTAKES = r"""
+long_bar | "viscous" | "vicious" | $.boundary.right.type | 'vicious' is not one of
+long_bar | [boundary.right] | [boundary.rihgt] | $.boundary | 'rihgt' was unexpected
+long_bar | amplitude = 0.5 | amplitude = "much" | $.wave.pulse.amplitude | not of type 'number'
+long_bar | [[monitor]] | [monitor] | $.monitor | is not of type 'array'
+tunnel | centre = | center = | $.hole[0] | 'center' was unexpected
+excavation | type = "fixed" | type = "viscous" | $.static.boundary.bottom.type | is not one of
+rock_bar | # [boundary.right] | [boundary.top] | $.boundary | 'top' was unexpected
+"""
+
+
+@pytest.mark.parametrize(("name", "old", "new", "place", "said"), rows(MISTAKES))
+def test_a_mistake_is_found_where_it_is(wrong, name: str, old: str, new: str, place: str, said: str) -> None:
+    text = starting_point(name)
+    assert old in text
+    found = wrong(text.replace(old, new, 1))
+    assert any(where == place and said in what for where, what in found)
+
+
+def test_units_stand_in_descriptions_and_null_nowhere(schema) -> None:
+    run = schema["$defs"]["DiskRun"]["properties"]
+    assert run["duration"]["description"] == "simulated time (s)"
+    assert schema["$defs"]["Material"]["properties"]["pb_ten"]["type"] == "number"
+
+    def holds_null(value) -> bool:
+        if isinstance(value, dict):
+            return value.get("type") == "null" or any(map(holds_null, value.values()))
+        return value is None or (isinstance(value, list) and any(map(holds_null, value)))
+
+    assert not holds_null(schema)

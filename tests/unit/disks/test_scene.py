@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from small_cases import GROUND, Tables, small
+from scene_tables import grains, lattice
+from small_cases import GROUND, Tables, around, problems_in, small
 
 from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, build, column_alone
@@ -10,10 +11,7 @@ from dembound.disks.sides import boundary_medium
 from dembound.disks.surroundings.mesh import box_of
 from dembound.errors import CaseError, PackingError
 
-RANDOM = {
-    "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
-    "motion.held": [],
-}
+RANDOM = {"packing": grains(12.0, 10.0, 0.5, 6.0, 0) | {"brick": [6.0, 5.0]}, "motion.held": []}
 
 
 def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
@@ -29,15 +27,11 @@ def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
 
 def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
     moduli = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9}
-    media = []
-    for material in ({"density": 2500.0, "p_wave_speed": 900.0}, moduli | {"s_wave_speed": 300.0}, moduli):
-        case = bar({"material": material})
-        media.append(boundary_medium(build(case).ground, axis=0))
-
+    materials = ({"density": 2500.0, "p_wave_speed": 900.0}, moduli | {"s_wave_speed": 300.0}, moduli)
+    media = [boundary_medium(build(bar({"material": each})).ground, axis=0) for each in materials]
     assert (media[0].density, media[0].p_wave_speed, media[1].s_wave_speed) == (2500.0, 900.0, 300.0)
     # the lattice with μ = 0: c_p² = (E_c + Ē_c)/ρ, c_s = c_p/2; a solve with one unknown
-    assert media[2].p_wave_speed == pytest.approx(1000.0, rel=1e-12)
-    assert media[2].s_wave_speed == pytest.approx(500.0, rel=1e-12)
+    assert (media[2].p_wave_speed, media[2].s_wave_speed) == pytest.approx((1000.0, 500.0), rel=1e-12)
 
 
 TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}
@@ -69,11 +63,7 @@ def test_holes_that_leave_nothing_are_refused(bar) -> None:
 
 BESIDE = {"type": "free_field"}
 BASE = {"type": "viscous_input", "wave_s": "pulse"}
-TWO_BRICKS = {"size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]}
-PACKINGS = {
-    "A": {"pattern": "A", "size": [4.0, 3.0], "radius": 0.25},
-    "C": {"pattern": "C", **TWO_BRICKS, "edge_radius": 0.26},
-}
+PACKINGS = {"A": lattice(4.0, 3.0, 0.5), "C": RANDOM["packing"] | {"pattern": "C", "edge_radius": 0.26}}
 
 
 @pytest.fixture
@@ -120,35 +110,19 @@ def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str
 
 BOX: Tables = GROUND | {
     "ground": {"size": [40.0, 30.0]},
-    "packing": {
-        "pattern": "B",
-        "size": [12.0, 12.0],
-        "origin": [14.0, 6.0],
-        "brick": [6.0, 6.0],
-        "radius": 0.5,
-        "radius_ratio": 1.5,
-    },
-    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+    "packing": grains(12.0, 12.0, 1.0, 6.0, 0) | {"origin": [14.0, 6.0]},
+    "boundary": around("outside", "left", "right", "bottom", "top"),
     "outside": {"element": 6.0},
 }
-WAVE = {"boundary.bottom.wave_s": "w"}
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
 
 
-def case(**changes) -> Case:
-    return small(BOX, changes=changes)
+def scene(changes: Tables) -> DiskScene:
+    return build(small(BOX, changes=changes))
 
 
-def scene(*changes: dict) -> DiskScene:
-    return build(case(**{key: value for each in changes for key, value in each.items()}))
-
-
-@pytest.fixture(scope="module")
-def shaken() -> DiskScene:
-    return scene(WAVE)
-
-
-def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) -> None:
+def test_the_continuum_reaches_from_the_box_to_the_surface() -> None:
+    shaken = scene({"boundary.bottom.wave_s": "w"})
     mesh = shaken.outside.body.mesh
     offset = shaken.ground.brick.mass_offset
     assert box_of(shaken.assembly.part(slice(shaken.seam.count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
@@ -162,21 +136,18 @@ def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) ->
 def test_a_hole_that_reaches_a_side_is_refused() -> None:
     hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": "after"}
     with pytest.raises(CaseError, match=r"^hole\[1, shaft\]: reaches boundary.top, where the continuum has no hole"):
-        scene({"hole": [hole]}, WEIGHT)
+        scene(WEIGHT | {"hole": [hole]})
 
 
 def test_between_box_and_surface_there_is_room_for_an_element() -> None:
-    lattice = {"packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0], "origin": [14.0, 14.0]}}
-    with pytest.raises(CaseError) as caught:
-        scene(lattice)
-    (line,) = caught.value.problems
-    assert line == (
+    packing = lattice(12.0, 12.0, 1.0)
+    said = (
         "packing.origin: the disks end 4 m below the surface of the ground; they must reach it, or end at least 5 m "
         "below, the smallest useful element"
     )
-    up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
-    lattice["packing"]["origin"] = [14.0, 18.0]
-    assert scene(lattice, {"boundary": up_to_it}).outside.count > 0
+    assert problems_in(lambda: scene({"packing": packing | {"origin": [14.0, 14.0]}})) == [said]
+    up_to_it = {"packing": packing | {"origin": [14.0, 18.0]}, "boundary": around("outside")}
+    assert scene(up_to_it).outside.count > 0
 
 
 def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
-from dembound.exact import bar_stress, bar_velocity, triangle_spall
-from dembound.exact.bar import End
+from dembound.exact import Lattice, bar_stress, bar_velocity, cells_per_wavelength, courant_limit, triangle_spall
+from dembound.exact.bar import End, usual_shares
 
 LENGTH, SPEED, IMPEDANCE = 3.0, 2000.0, 5e6
 WAIT = LENGTH / SPEED
@@ -21,10 +22,8 @@ def triangle(rise: float, fall: float):
 
 
 def both(place: float, time: np.ndarray, far_end: End) -> tuple[np.ndarray, np.ndarray]:
-    return (
-        bar_stress(place, time, bump, LENGTH, SPEED, far_end),
-        bar_velocity(place, time, bump, LENGTH, SPEED, IMPEDANCE, far_end),
-    )
+    stress = bar_stress(place, time, bump, LENGTH, SPEED, far_end)
+    return stress, bar_velocity(place, time, bump, LENGTH, SPEED, IMPEDANCE, far_end)
 
 
 @pytest.mark.parametrize("far_end", ["free", "fixed"])
@@ -38,10 +37,8 @@ def test_momentum_and_stiffness_are_kept(far_end: End) -> None:
     time = np.linspace(2e-4, 5.3 * WAIT, 500)
     bound = 2.0 * step**2 / 6.0 * 12.0 * (np.pi / 6e-4) ** 3 * 2.0 * CREST
     for place in (0.4, 1.5, 2.9):
-        (left, right), (before, after) = (
-            [both(place + d * SPEED, time, far_end) for d in (-step, step)],
-            [both(place, time + d, far_end) for d in (-step, step)],
-        )
+        left, right = (both(place + d * SPEED, time, far_end) for d in (-step, step))
+        before, after = (both(place, time + d, far_end) for d in (-step, step))
         stress, velocity = ((b - a) / (2.0 * step) for a, b in zip(left, right, strict=True))
         stress_rate, velocity_rate = ((b - a) / (2.0 * step) for a, b in zip(before, after, strict=True))
         np.testing.assert_allclose(IMPEDANCE * velocity_rate, stress, rtol=0, atol=bound)
@@ -71,12 +68,6 @@ def test_spall_is_the_first_place_at_its_strength(rise: float, fall: float, shar
     assert np.abs(places[reached[:, first]] - place).max() <= 4.0 * apart * step * SPEED
 
 
-@pytest.mark.parametrize("strength", [0.0, 1.001 * CREST])
-def test_a_crest_below_the_strength_breaks_nothing(strength: float) -> None:
-    with pytest.raises(ValueError, match="strength"):
-        triangle_spall(LENGTH, SPEED, 1e-4, 1e-4, CREST, strength)
-
-
 @pytest.mark.parametrize("far_end", ["free", "fixed"])
 def test_ends_do_what_they_are_to(far_end: End) -> None:
     early = both(1.2, np.array([0.0, 0.99, 1.0]) * 1.2 / SPEED, far_end)
@@ -91,3 +82,92 @@ def test_ends_do_what_they_are_to(far_end: End) -> None:
     else:
         np.testing.assert_allclose(velocity, 0.0, rtol=0, atol=rounding / IMPEDANCE)
         assert stress.min() == pytest.approx(-2.0 * CREST, rel=1e-3)
+
+
+HORIZONS = [1, 2, 3, 8]
+
+
+def lattice(horizon: int, courant: float) -> Lattice:
+    """A lattice with Δx = 1 m and c = 1 m/s, so that Δt = ν and k = θ."""
+    return Lattice(horizon, spacing=1.0, time_step=courant, wave_speed=1.0)
+
+
+def printed_sum(horizon: int, phase: np.ndarray) -> np.ndarray:
+    """(2/m²) Σ (w_p/p)(cos pkΔx − 1), L eq. 12 with the outermost neighbour's half weight once."""
+    weights = np.array((horizon - 1) * [1.0] + [0.5]) / np.arange(1, horizon + 1)
+    return 2.0 / horizon**2 * sum(w * (np.cos(p * phase) - 1.0) for p, w in enumerate(weights, start=1))
+
+
+@pytest.mark.parametrize("horizon", HORIZONS)
+@pytest.mark.parametrize("share", [0.1, 0.99])
+def test_frequency_solves_the_printed_equation(horizon: int, share: float) -> None:
+    courant = share * courant_limit(horizon)
+    phase = np.linspace(0.01, np.pi, 200)
+    # each side is a sum of up to m terms that come to at most 2: (m + 10) roundings of 2
+    found, rounding = np.cos(lattice(horizon, courant).frequency(phase) * courant) - 1.0, np.finfo(float).eps
+    expected = courant**2 * printed_sum(horizon, phase)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=(horizon + 10) * 2.0 * rounding)
+
+
+@pytest.mark.parametrize("horizon", HORIZONS)
+def test_group_velocity_is_the_slope_of_the_frequency(horizon: int) -> None:
+    speeds = lattice(horizon, 0.9 * courant_limit(horizon))
+    for low, high in ((0.1, 0.5), (0.5, 1.3), (1.3, 3.1)):
+        rise = quad(speeds.group_velocity, low, high, epsabs=0.0, epsrel=1e-12)[0]
+        # frequencies of up to π/ν are subtracted, each good to a few roundings
+        assert rise == pytest.approx(float(speeds.frequency(high) - speeds.frequency(low)), rel=1e-11, abs=1e-14)
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 6, 12])
+def test_shortest_wave_is_the_first_to_grow(horizon: int) -> None:
+    phase = np.linspace(0.0, np.pi, 20001)
+    largest = -0.5 * printed_sum(horizon, phase)
+    # at a maximum with roundings of a sum of m terms; its place is flat to the fourth order for even m
+    assert largest[-1] >= largest.max() - horizon * np.finfo(float).eps
+    assert courant_limit(horizon) == pytest.approx(1.0 / np.sqrt(largest.max()), rel=1e-14)
+    assert np.all(np.diff(lattice(horizon, 0.0).frequency(phase)) > -1e-14)
+
+
+@pytest.mark.parametrize("horizon", HORIZONS)
+@pytest.mark.parametrize(("of", "share"), [("phase", 0.0), ("phase", 0.9), ("group", 0.5)])
+def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(horizon: int, share: float, of) -> None:
+    courant = share * courant_limit(horizon)
+    cells = cells_per_wavelength(horizon, courant, of=of)
+    speeds = lattice(horizon, courant)
+    speed = speeds.phase_velocity if of == "phase" else speeds.group_velocity
+    phase = 2.0 * np.pi / cells
+    assert abs(float(speed(phase)) - 1.0) == pytest.approx(0.01, rel=1e-9)  # brentq's 1e-12 of a phase, twice over
+    assert np.all(np.abs(speed(np.linspace(0.0, 0.999 * phase, 1000)) - 1.0) < 0.01)
+    assert abs(float(speed(1.001 * phase)) - 1.0) > 0.01
+    assert cells_per_wavelength(1, 1.0, of=of) == 2.0  # there is no error at all
+
+
+@pytest.mark.parametrize(
+    ("make", "given", "said"),
+    [
+        *((Lattice, each, "must") for each in ((0, 1, 1, 1), (1, 0, 1, 1), (1, 1, -1, 1), (1, 1, 1, np.inf))),
+        *((Lattice, (2, 1.0, 1.0, 1.0, each), "shares") for each in ((1.0,), (0.4, 0.5))),
+        (cells_per_wavelength, (1, 1.01), r"Courant number \(1.01\) must not be above 1"),
+        (cells_per_wavelength, (1, 0.5, 1.0), "error"),
+        # a crest below the strength breaks nothing
+        *((triangle_spall, (LENGTH, SPEED, 1e-4, 1e-4, CREST, each), "strength") for each in (0.0, 1.001 * CREST)),
+    ],
+)
+def test_what_makes_no_sense_is_refused(make, given: tuple, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        make(*given)
+
+
+@pytest.mark.parametrize("horizon", HORIZONS)
+def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
+    shares = usual_shares(horizon)
+    courant = 0.9 * courant_limit(horizon)
+    usual, given = lattice(horizon, courant), Lattice(horizon, 1.0, courant, 1.0, shares)
+    phase = np.linspace(0.0, 3.1, 200)
+
+    # sums of m terms of order 1; of the group velocity the closed form vanishes where the sum has its rounding
+    np.testing.assert_allclose(given.frequency(phase), usual.frequency(phase), rtol=1e-13 * horizon)
+    np.testing.assert_allclose(given.group_velocity(phase), usual.group_velocity(phase), atol=1e-13 * horizon)
+    assert given.courant_limit == pytest.approx(courant_limit(horizon), rel=1e-12)
+    cells = cells_per_wavelength(horizon, courant)
+    assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(cells, rel=1e-10)

@@ -4,11 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scene_tables import monitors
 
 from dembound.boundaries import Velocity
 from dembound.kinds import kind_of
 from dembound.motion.endings import Peak, PeakRule, Silence, Silent, silent_rule
+from dembound.motion.paths import Front, Source, first_arrivals, plane_needed
 from dembound.motion.sides import Samples
+from dembound.table import EVERYWHERE
 
 STEP = 0.5
 """Time step (s) of synthetic runs; exact in binary."""
@@ -43,9 +46,7 @@ def pulse(length: int, first: int, last: int, height: float = 1.0) -> np.ndarray
 def test_a_run_ends_once_all_have_been_silent_for_long_enough(block: int) -> None:
     speeds = np.column_stack([pulse(100, 5, 20), pulse(100, 10, 30)])
     # the last loud step is 30; four seconds are eight steps, and 31 … 38 are the eight silent ones: 39 steps done
-    whole = ended_at(speeds, Silent(1e-3, 4.0, 0.0), block)
-
-    assert whole == -(-39 // block) * block
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), block) == -(-39 // block) * block
 
 
 def test_the_level_is_that_of_the_peak_so_far() -> None:
@@ -82,11 +83,9 @@ LATER = {"type": "cosine", "amplitude": 1.0, "period": 0.02, "start": 0.5}
 
 
 def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
-    changes = {"monitor": [{"name": "near", "position": [2.0, 0.5]}, {"name": "far", "position": [8.0, 0.5]}]}
-    changes |= {"run.until": "silent", "run.duration": 1.0}
+    changes = {"monitor": monitors(near=(2.0, 0.5), far=(8.0, 0.5)), "run.until": "silent", "run.duration": 1.0}
     rule, scene = rule_of(bar(changes))
-    far = scene.positions[scene.monitors["far"], 0]
-    near = scene.positions[scene.monitors["near"], 0]
+    near, far = scene.positions[[scene.monitors["near"], scene.monitors["far"]], 0]
     assert rule.level == 1e-3
     # P waves from the left at 1000 m/s; from the far one to the left and back, or from the near one to the right
     assert rule.earliest == pytest.approx(0.01 + far / 1000.0, rel=1e-12)
@@ -96,8 +95,7 @@ def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
     later, scene = rule_of(bar({**changes, "load": [load], "wave.late": LATER}))
     # y is held: P waves only along x, and S waves of 500 m/s across, half of the stiffness being without shear
     near = scene.positions[scene.monitors["near"]]
-    slow = 500.0
-    assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / slow, rel=1e-12)
+    assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / 500.0, rel=1e-12)
     constant = {"type": "constant", "amplitude": 0.1, "start": 0.2}  # waited for until it comes
     assert rule_of(bar({**changes, "wave.pulse": constant}))[0].earliest == pytest.approx(0.2 + far / 1000.0, rel=1e-12)
     assert rule_of(bar({**changes, "wave.pulse.period": 0.9}))[0].hold == pytest.approx(0.9, rel=1e-12)
@@ -161,3 +159,63 @@ def test_waves_at_the_beginning_do_not_end_a_run() -> None:
     noise = np.concatenate([[0.0, 1e-9], np.zeros(60), PAST])  # a body at rest before its wave begins
     assert fallen_at({"top": noise}, PeakRule(0.7, 10.0, 0.0)) == 2 + 10 + 1
     assert fallen_at({"top": noise}, PeakRule(0.7, 10.0, 130.0)) == 2 * 62 + 211
+
+
+LEVEL = {"left": (-np.inf, 0.0, np.inf, 0.0), "bottom": (0.0, -np.inf, 0.0, np.inf)}
+"""Sources that span the scene: all of the bottom beside a left or right side, all of the left beside bottom or top."""
+
+
+def source(box, start=0.0):
+    return Source(box, start, np.inf, 1.0)
+
+
+def test_a_front_has_come_its_way_and_the_length_of_its_precursor() -> None:
+    # s = 1000 m: (1000 · 0.4² / 8)^(1/3) = 20^(1/3)
+    assert Front(500.0, 0.4).reach(2.0) == pytest.approx(1000.0 + 10.0 * 20.0 ** (1.0 / 3.0), rel=1e-14)
+    assert Front(500.0, 0.4).reach(-1.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("side", "plane", "place", "way"),
+    [
+        ("right", 10.0, (7.0, 6.0), np.hypot(7.0 + 3.0, 4.0)),  # from (3, 2): 7 m there, 3 m back, 4 m up
+        ("left", -1.0, (7.0, 6.0), np.hypot(4.0 + 8.0, 4.0)),
+        ("top", 9.0, (7.0, 6.0), np.hypot(4.0, 7.0 + 3.0)),
+        ("bottom", -2.0, (7.0, 6.0), np.hypot(4.0, 4.0 + 8.0)),
+    ],
+)
+def test_a_way_over_a_side_is_that_to_the_mirror_image(side: str, plane: float, place, way: float) -> None:
+    at = np.array([place])
+    found = source((3.0, 2.0, 3.0, 2.0)).distance_over(side, plane, at)
+
+    assert found == pytest.approx([way], rel=1e-15)
+    assert source((3.0, 2.0, 3.0, 2.0)).distance(at) == pytest.approx([np.hypot(4.0, 4.0)], rel=1e-15)
+    np.testing.assert_array_equal(at, [place])
+
+
+@pytest.mark.parametrize(
+    ("side", "box"),
+    [
+        ("left", (3.0, 2.0, 3.0, 2.0)),
+        ("right", (2.0, 1.0, 30.0, 30.0)),
+        ("bottom", LEVEL["left"]),
+        ("top", LEVEL["bottom"]),
+        ("top", EVERYWHERE),
+    ],
+)
+def test_at_the_plane_needed_the_last_way_is_as_long_as_waves_get(side: str, box) -> None:
+    rng = np.random.default_rng(3)
+    places, front = rng.uniform(0.0, 10.0, (5, 2)), Front(100.0, 0.1)
+    sources = [source(box, 0.01), source((4.0, 4.0, 4.0, 4.0), 0.02)]
+    plane = plane_needed(side, sources, places, front, 0.3)
+    spare = [(each.distance_over(side, plane, places) - front.reach(0.3 - each.start)).min() for each in sources]
+
+    assert min(spare) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_first_arrival_is_that_of_the_nearest_way_and_the_earliest_source() -> None:
+    left = Source((0.0, -np.inf, 0.0, np.inf), 2.0, 3.0, 1.0)
+    point = Source((8.0, 0.0, 8.0, 0.0), 5.0, 6.0, 1.0)
+    places = np.array([[4.0, 9.0], [8.0, 3.0], [12.0, 0.0]])
+    assert first_arrivals([left, point], Front(2.0, 0.1), places) == pytest.approx([4.0, 6.0, 7.0])
+    assert np.isinf(first_arrivals([], Front(2.0, 0.1), places)).all()

@@ -1,5 +1,13 @@
 """The TOML tables of the packings."""
 
+import hashlib
+import io
+import logging
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, fields
+
 import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
@@ -8,6 +16,7 @@ from dembound.casefile.types import PackingTable
 from dembound.errors import CaseError
 from dembound.packings import Square
 from dembound.packings import random_brick as random_module
+from dembound.packings.brick import clear, load_or_pack
 
 B = {"pattern": "B", "size": [20.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
 C = {**B, "pattern": "C", "edge_radius": 0.26}
@@ -53,15 +62,16 @@ def test_edge_radii_are_adjusted_to_whole_disks():
     assert 28 * on_x + 2 * on_y == pytest.approx(8.0)  # the corner disk and 14 more
 
 
-@pytest.mark.parametrize("modulus", [1e7])
-def test_confining_stress_out_of_range_names_the_range(modulus):
-    with pytest.raises(CaseError, match=r"packing\.confining_stress: 10 MPa .* can be packed"):
-        read({**B, "confining_stress": 1e7}).pack(modulus)
-
-
-def test_loose_packings_of_nearly_equal_disks_are_refused():
-    with pytest.raises(CaseError, match=r"packing\.radius_ratio: is 1\.05, must be at least 1\.1 .* crystals"):
-        read({**B, "radius_ratio": 1.05, "confining_stress": 1e6}).pack(1e10)
+@pytest.mark.parametrize(
+    ("keys", "modulus", "said"),
+    [
+        ({"confining_stress": 1e7}, 1e7, r"packing\.confining_stress: 10 MPa .* can be packed"),
+        ({"radius_ratio": 1.05, "confining_stress": 1e6}, 1e10, r"packing\.radius_ratio: is 1\.05, must .* crystals"),
+    ],
+)
+def test_stresses_out_of_range_and_loose_packings_of_nearly_equal_disks_are_refused(keys, modulus, said):
+    with pytest.raises(CaseError, match=said):
+        read({**B, **keys}).pack(modulus)
 
 
 def test_bricks_are_packed_once_for_a_stress_over_the_modulus(monkeypatch):
@@ -73,3 +83,93 @@ def test_bricks_are_packed_once_for_a_stress_over_the_modulus(monkeypatch):
     monkeypatch.undo()
     edged = read({**C, "size": [5.2, 5.2], "brick": [5.2, 5.2]}).pack(1.25e9)
     assert edged.radii[edged.edge_rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))  # ten on each side
+
+
+KEY = {"pattern": "T", "radius": 0.5, "size": (1.0, 1.0)}
+
+
+@pytest.fixture
+def packer():
+    """Packs a small brick and counts how often it was asked to."""
+
+    def pack():
+        pack.calls += 1
+        return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
+
+    pack.calls = 0
+    return pack
+
+
+def test_second_time_comes_from_the_file(packer):
+    packed, kept = load_or_pack(KEY, packer), load_or_pack(KEY, packer)
+    assert packer.calls == 1
+    for field in fields(packed):
+        one, other = getattr(packed, field.name), getattr(kept, field.name)
+        assert np.array_equal(one, other)
+        assert type(one) is type(other)
+        assert np.asarray(one).dtype == np.asarray(other).dtype
+
+
+def test_a_damaged_file_is_packed_again_and_replaced(packer, own_cache, caplog):
+    caplog.set_level(logging.INFO)
+    brick = load_or_pack(KEY, packer)
+    (path,) = own_cache.iterdir()
+    whole = path.read_bytes()
+    changes = (
+        {"radii": np.zeros(1)},
+        {"positions": np.full((1, 2), np.nan)},
+        {"pairs": np.ones((2, 2), np.int64)},
+        {"extra": np.ones(1)},
+    )
+    damaged = [b"", b"not a brick", whole[: len(whole) // 2]]
+    for arrays in ({"size": np.ones(2)}, *(asdict(brick) | change for change in changes)):
+        content = io.BytesIO()
+        np.savez_compressed(content, **arrays)
+        damaged.append(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+    for content in damaged:
+        path.write_bytes(content)
+        packer.calls = 0
+        assert [load_or_pack(KEY, packer).radii.tolist() for _ in range(2)] == [[0.5], [0.5]]
+        assert packer.calls == 1
+        assert list(own_cache.iterdir()) == [path]
+    assert caplog.messages == [f"the cached brick {path} is damaged, it is packed again"] * len(damaged)
+
+
+def test_the_folder_can_move_and_need_not_be_writable(packer, own_cache, tmp_path, monkeypatch):
+    load_or_pack(KEY, packer)
+    own_cache.rename(tmp_path / "elsewhere")
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "elsewhere"))
+    load_or_pack(KEY, packer)
+    assert packer.calls == 1
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "file" / "bricks"))
+    assert len(load_or_pack(KEY, packer).radii) == 1
+
+
+def test_other_parameters_are_another_brick_and_clear_counts_what_it_deletes(packer):
+    assert clear() == 0
+    load_or_pack(KEY, packer)
+    load_or_pack({**KEY, "radius": 0.5 + 1e-15}, packer)
+    assert packer.calls == clear() == 2
+    load_or_pack(KEY, packer)
+    assert packer.calls == 3
+
+
+def test_a_brick_that_another_process_packs_is_waited_for(packer, own_cache):
+    begun, may_end = threading.Event(), threading.Event()
+
+    def slowly():
+        begun.set()
+        may_end.wait(10.0)
+        return packer()
+
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(load_or_pack, KEY, slowly)
+        begun.wait(10.0)
+        second = pool.submit(load_or_pack, KEY, packer)
+        time.sleep(0.2)
+        assert not second.done()
+        may_end.set()
+        assert np.array_equal(first.result().positions, second.result().positions)
+    assert packer.calls == 1
+    assert [path.suffix for path in own_cache.iterdir()] == [".npz"]

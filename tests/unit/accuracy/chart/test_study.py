@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 import pytest
+from small_cases import around
 
 from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
@@ -114,9 +115,8 @@ def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalli
     found, runs = charted(spalling(FADING), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 1.0]}, repeats=1)
     assert (found.reference.name, found.reference.own) == ("finer", ())
     # 20 and 40 cells: 160 are a multiple of both, and four times as many as the finest
-    assert found.reference.sentence == (
-        "finite differences at Courant number 1 and a spacing of 0.00625 m, finer than all choices"
-    )
+    said = "finite differences at Courant number 1 and a spacing of 0.00625 m, finer than all choices"
+    assert found.reference.sentence == said
     assert runs.count("finer reference") == 1
     assert found.judged == [0, 1, 2, 3]
     assert all(error.apart == 0.0 for line in found.lines for error in line.errors)
@@ -177,12 +177,12 @@ def test_random_packings_are_realisations_but_boxes_elsewhere_have_the_same_bric
 def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, tmp_path) -> None:
     """Dashpots that waves enter through stay in it: what they return would count against the continuum."""
     base = {"type": "viscous_input", "wave_s": "pulse", "half_mass": True}
-    field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": base}
+    field = around("free_field") | {"bottom": base}
     hole = {"name": "tunnel", "type": "circle", "centre": [10.0, 5.0], "radius": 2.0}
     changes = {"packing.size": [20.0, 10.0], "motion.held": [], "hole": [hole], "boundary": field, "run.duration": 0.04}
     case = bar({**changes, "monitor": [{"name": "crown", "position": [10.0, 7.5]}]})
-    beyond = {"boundary.left": {"type": "outside"}, "boundary.right": {"type": "outside"}}
-    named = {"field": {}, "beyond": {**beyond, "boundary.bottom": {"type": "outside", "wave_s": "pulse"}}}
+    beyond = around("outside") | {"bottom": {"type": "outside", "wave_s": "pulse"}}
+    named = {"field": {}, "beyond": {f"boundary.{side}": table for side, table in beyond.items()}}
     found = chart(case, Options(named, 1), tmp_path / "chart", False, Log())
     assert "before a continuum" in found.reference.sentence
     by_field, by_continuum = (line.errors[0].rms for line in found.lines)
@@ -215,33 +215,32 @@ def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "options", "said"),
+    ("body", "changes", "options", "said"),
     [
-        ({"monitor": []}, {}, "monitor: is missing"),
-        ({}, {"requested": Requested(monitor="nowhere")}, "--monitor: is nowhere, must be one of gauge"),
-        ({"bar.attenuation": 0.1}, {"reference": "exact"}, "no exact solution"),
+        ("spalling", {"monitor": []}, {}, "monitor: is missing"),
+        ("spalling", {}, {"requested": Requested(monitor="no")}, "--monitor: is no, must be one of gauge"),
+        ("spalling", {"bar.attenuation": 0.1}, {"reference": "exact"}, "no exact solution"),
+        (
+            "spalling",
+            {},
+            {"vary": {"bar.spacing": [0.05]}, "reference": "finest"},
+            "is the only valid choice, which wou",
+        ),
+        ("bar", {}, {"vary": {"run.safety": [0.45, 0.9]}, "reference": "finer"}, "finer is for bars"),
+        ("bar", {}, {"vary": {"run.safety": [0.5]}, "requested": Requested("stress")}, "stress is that along a bar"),
     ],
 )
-def test_what_cannot_be_compared_is_bad_input(charted, spalling, changes, options, said) -> None:
+def test_what_cannot_be_compared_is_bad_input(charted, request, body, changes, options, said, tmp_path) -> None:
     with pytest.raises(CaseError, match=said):
-        charted(spalling(changes), repeats=1, **options)
+        charted(request.getfixturevalue(body)(changes), repeats=1, **options)
+    assert "only valid" not in said or not (tmp_path / "chart").exists()
 
 
-def test_single_choices_folders_of_something_else_and_what_only_bars_have_are_refused(
-    charted, spalling, bar, tmp_path
-) -> None:
-    with pytest.raises(CaseError, match="is the only valid choice, which would be its own reference"):
-        charted(spalling(), {"bar.spacing": [0.05]}, reference="finest")
-    assert not (tmp_path / "chart").exists()
+def test_a_folder_of_something_else_is_refused(charted, spalling, tmp_path) -> None:
     (tmp_path / "chart").mkdir()
     (tmp_path / "chart" / "thesis.tex").touch()
     with pytest.raises(CaseError, match="holds no chart"):
         charted(spalling())
-    (tmp_path / "chart" / "thesis.tex").unlink()
-    with pytest.raises(CaseError, match="finer is for bars"):
-        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
-    with pytest.raises(CaseError, match="stress is that along a bar"):
-        charted(bar(), {"run.safety": [0.5]}, requested=Requested("stress"))
 
 
 def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:

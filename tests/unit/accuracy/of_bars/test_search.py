@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from advised import Advised, advised
-from estimated_bars import RICKER, dalembert, exact, recorded_of, scene
+from estimated_bars import RICKER, dalembert, recorded_of, scene, true_errors
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.of_bars.options import BarOption
@@ -20,13 +20,9 @@ from dembound.kinds import with_changes
 def true_error(choice: Advised) -> float:
     """The largest RMS error over RMS of the run of a choice, beside the exact motion at the given case's nodes."""
     given, case = choice.given, choice.case
-    recorded, _ = recorded_of(case)
     places = {name: own.place for name, own in recorded_of(given)[0].items()}
-    found = []
-    for name, own in recorded.items():
-        true = exact(case, type(own)(places[name], own.time, own.values))
-        found += [np.linalg.norm(v[:, 0] - true[q]) / np.linalg.norm(v[:, 0]) for q, v in own.values.items()]
-    return float(max(found))
+    recorded = {name: replace(own, place=places[name]) for name, own in recorded_of(case)[0].items()}
+    return max(error for own in recorded.values() for error in true_errors(case, own).values())
 
 
 @pytest.mark.parametrize(
@@ -87,9 +83,8 @@ def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
 
     Whole numbers make Δx/c differ a little, so that the bar may not run at the limit itself.
     """
-    bar = {"length": 1.0, "range": [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wave_speed": 1400.0}]}
-    changes = {f"bar.{key}": value for key, value in bar.items()} | RICKER
-    case = with_changes(scene("finite differences, ν = 0.9"), changes)
+    ranges = [{"name": "a", "length": 0.6}, {"name": "b", "length": 0.4, "wave_speed": 1400.0}]
+    case = with_changes(scene("finite differences, ν = 0.9"), {"bar.range": ranges} | RICKER)
 
     choice = advised(case, 0.005)
 
@@ -117,9 +112,7 @@ def test_a_pulse_must_be_seen_between_the_steps() -> None:
 def test_the_small_stress_beside_a_free_end_does_not_count() -> None:
     case = with_changes(scene("finite differences, ν = 0.9"), {"monitor.far.position": 1.0})
     choice = advised(case, 0.05, ["bar", "run"])
-    recorded, _ = recorded_of(case)
-    errors = {q: v[:, 0] - exact(case, recorded["far"])[q] for q, v in recorded["far"].values.items()}
-    shares = {q: np.linalg.norm(errors[q]) / np.linalg.norm(v[:, 0]) for q, v in recorded["far"].values.items()}
+    shares = true_errors(case, recorded_of(case)[0]["far"])
     assert shares["stress"] > 0.05 > shares["velocity"]
     assert choice.holds
     assert choice.choice.toml == []
@@ -133,16 +126,14 @@ def test_of_a_bar_that_may_break_finite_differences_are_named_where_its_method_d
 
     assert not choice.holds
     assert (choice.case.bar, choice.case.method) == (case.bar, case.method)
-    named = re.search(
-        r"; finite differences, loads on the last node, nodes every ([\d.]+) mm, .* have ([\d.]+) %", choice.words
-    )
+    said = r"; finite differences, loads on the last node, nodes every ([\d.]+) mm, .* have ([\d.]+) %"
+    named = re.search(said, choice.words)
     assert named
     assert choice.words.endswith("break otherwise")
     other = {"bar.spacing": 1e-3 * float(named[1]), "method": {"type": "finite_difference"}, "load.hit.nodes": 1}
     finite = with_changes(case, {**other, "run": {"duration": 1.1e-3, "courant": 1.0}})
-    assert 0.01 * float(named[2]) == pytest.approx(
-        true_error(choice._replace(choice=Choice.of(case, finite, ""))), rel=0.1
-    )
+    error = true_error(choice._replace(choice=Choice.of(case, finite, "")))
+    assert 0.01 * float(named[2]) == pytest.approx(error, rel=0.1)
 
 
 def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
@@ -166,8 +157,7 @@ FROM_THE_RIGHT: dict[str, Any] = {
 
 
 def built(name: str, **changes: Any) -> BarScene:
-    case = with_changes(scene(name), {key.replace("__", "."): value for key, value in changes.items()})
-    return build_bar(case)
+    return build_bar(with_changes(scene(name), {key.replace("__", "."): value for key, value in changes.items()}))
 
 
 def choice(name: str, courant: float, spacing: float = 0.01, ends: str = "dashpots", method: str = "") -> BarOption:

@@ -4,15 +4,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_cases import PUSHED, small
+from plane_motion import in_plane, recorded
+from scene_tables import grains, monitors
+from small_cases import GRAINS, OPEN, PUSHED, SOIL, Tables, around, small
 
+from dembound.accuracy import runner
+from dembound.accuracy.estimate import causes_of
+from dembound.accuracy.judge import judge_of
 from dembound.accuracy.of_disks.causes import Formulas, causes_of_run, ground_causes, rest_causes
+from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.measured import settled_of
-from dembound.accuracy.runner import at_step, measure
-from dembound.disks.scene import DiskScene
+from dembound.accuracy.of_disks.measured import cause_of_packing, settled_of
+from dembound.accuracy.runner import Run, at_step, measure
+from dembound.disks.material.layered import materials_in
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
 from dembound.formulas.cause import STEP
+from dembound.formulas.disks.entry import late_by
+from dembound.formulas.disks.reflections import Reflections
+from dembound.formulas.history import History, earlier
 from dembound.kinds import with_changes
+from dembound.results.compare import relative_error
 from dembound.running import Progress, plan
 
 LENGTH, SPEED = 30.0, 1000.0
@@ -79,13 +92,12 @@ def test_waves_of_a_load_come_back_early_from_disks_that_are_held() -> None:
         "run": {"duration": 0.1},
     }
     coarse, fine = (small(tables, changes={"packing.radius": radius}) for radius in (0.5, 0.5 / 3))
-    own, finer = (measure(case, Progress())[0].motions["m"] for case in (coarse, fine))
-    own = replace(own, values={q: own.values[q][:, :2] for q in ("velocity", "displacement")})
+    own, finer = (recorded(case)["m"] for case in (coarse, fine))
     causes = causes_of_run(coarse, {"m": own}, 1e-4, 1e6, 1e7)
     (found,) = [each for each in causes.found if each.name == "bottom side"]
     assert found.of_disks
     for quantity, values in own.values.items():
-        difference = (values - finer.at(own.time).values[quantity][:, :2])[:, 1]
+        difference = (values - finer.at(own.time).values[quantity])[:, 1]
         expected = 2.0 / 3.0 * np.asarray(found.parts["m"][quantity])[:, 1]
         assert np.linalg.norm(difference - expected) < 0.35 * np.linalg.norm(difference)
 
@@ -94,11 +106,7 @@ GRAVEL = PUSHED | {
     "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
     "material": {"density": 2000.0, "p_wave_speed": 400.0, "law": "linearpbond", "fric": 0.3},
     "static": {"ratio": 1e-6, "boundary": {"bottom": {"type": "fixed"}}},
-    "boundary": {
-        "bottom": {"type": "velocity", "wave_s": "shake"},
-        "left": {"type": "periodic"},
-        "right": {"type": "periodic"},
-    },
+    "boundary": around("periodic", "left", "right") | {"bottom": {"type": "velocity", "wave_s": "shake"}},
     "wave": {"shake": {"type": "cosine", "amplitude": 0.2, "period": 0.1}},
     "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
     "monitor": [{"name": "top", "position": [5.0, 4.75]}],
@@ -109,7 +117,7 @@ GRAVEL = PUSHED | {
 SHEARED = GRAVEL | {
     "material": GRAVEL["material"] | {"fric": 0.2, "pb_ten": 1e9, "pb_coh": 1e9},
     "static": {"stress": [-1e5, -1e5, 4e4]},
-    "boundary": {"bottom": {"type": "viscous"}, "left": {"type": "viscous"}, "right": {"type": "viscous"}},
+    "boundary": around("viscous"),
     "load": [{"name": "hit", "force": [0.0, 1e3], "region": [4.0, 2.0, 6.0, 3.0], "wave": "shake"}],
     "run": {"duration": 0.05},
 }
@@ -122,18 +130,17 @@ def test_where_contacts_slide_the_time_step_is_found_with_half_of_it() -> None:
     step = plan(case).time_step
     run, fine = (measure(at_step(case, step / n), Progress())[0] for n in (1, 8))
     assert run.laws == ("elastic", "linearpbond")
-    recorded = {
-        name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in run.motions.items()
-    }
-    found = next(cause for cause in causes_of_run(case, recorded, step, run.work, 1e9).found if cause.name == STEP)
+    motions = in_plane(run.motions)
+    found = next(cause for cause in causes_of_run(case, motions, step, run.work, 1e9).found if cause.name == STEP)
     assert (found.how, found.is_sample) == ("companion", True)
 
-    own = recorded["top"].velocity[:, 0]
-    true = np.linalg.norm(own - fine.motions["top"].at(recorded["top"].time).velocity[:, 0]) / np.linalg.norm(own)
+    top = motions["top"]
+    own = top.velocity[:, 0]
+    true = np.linalg.norm(own - fine.motions["top"].at(top.time).velocity[:, 0]) / np.linalg.norm(own)
     # one sample of a random error; were it all of the difference, or none of it, it would be 1.12 times or 0
-    assert found.share("top", "velocity", recorded["top"]) == pytest.approx(true, rel=0.3)
-    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(recorded) if cause.name == STEP)
-    assert true > 3.0 * formula.share("top", "velocity", recorded["top"])
+    assert found.share("top", "velocity", top) == pytest.approx(true, rel=0.3)
+    (formula,) = (cause for cause in Formulas(plan(case).scene, step).causes(motions) if cause.name == STEP)
+    assert true > 3.0 * formula.share("top", "velocity", top)
 
 
 def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() -> None:
@@ -148,3 +155,97 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.15)
     assert settled_of(own) is not None
     assert not settled_of(own)["elastic"]
+
+
+COLUMN: Tables = SOIL | {
+    "packing": grains(2.5, 12.5, 0.25, 2.5, 3),
+    "wave": {"in": SOIL["wave"]["in"] | {"frequency": 10.0}},
+    "monitor": monitors(top=(1.25, 12.5), sand=(1.25, 5.0)),
+}
+"""Random disks in long waves."""
+
+BELOW = {"bottom": SOIL["boundary"]["bottom"] | {"half_mass": True}}
+LATTICE: Tables = SOIL | {"boundary": SOIL["boundary"] | BELOW}
+"""Short waves without reflections at the bottom: errors are those of the disks."""
+
+
+def test_estimates_of_a_column_are_near_its_errors_beside_the_exact_motion() -> None:
+    case, within = small(LATTICE), 1.5
+    scene = build(case)
+    step = choose_step(scene)[0]
+    motions = recorded(case)
+    moved = earlier(motions, late_by(scene))
+    solution = judge_of(case).exact(case)
+    exact = solution.motions(case, moved)
+    causes = [each for each in causes_of(case, motions, step, 1e9).found if each.name != "places"]
+    for name, own in moved.items():
+        error = relative_error(own.velocity[:, 0] - exact[name].velocity[:, 0], exact[name].velocity[:, 0])
+        assert 1e-3 < error < 0.05
+        size = np.linalg.norm(own.velocity[:, 0])
+        parts = [float(np.linalg.norm(each.parts[name]["velocity"][:, 0]) / size) for each in causes]
+        assert error / within < np.linalg.norm(parts) < within * error
+
+
+def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them() -> None:
+    scene = build(small(COLUMN))
+    larger = coarser(scene.case, scene, 1e-4, 0.6).case
+    stretch = larger.size[1] / 12.5
+    assert larger.joints == pytest.approx([8.5 * stretch, 4.0 * stretch])
+    for own, made in zip(materials_in(scene.ground), materials_in(build(larger).ground), strict=True):
+        assert made.density == own.density
+        np.testing.assert_allclose(made.wave_speeds(1), own.wave_speeds(1), rtol=1e-3)  # P and S are not quite apart
+    # layers of whole cells of the largest disks
+    thin = small(COLUMN, changes={"layer.sand.thickness": 0.75, "run.duration": 0.01})
+    assert coarser(thin, build(thin), 1e-4, 0.3).case.joints[0] == pytest.approx(8.5)
+
+
+def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
+    scene = build(small(LATTICE | OPEN))
+    alone = {}
+    for number, height in enumerate((10.0, 6.0, 1.0)):
+        one = scene.case.uniform_at(height)
+        alone[number] = Reflections().of(build(one), "left", 1e-4)["s"].size
+    shares = np.array([4.0, 4.5, 4.0]) / 12.5
+    mean = np.sqrt(shares @ np.square(list(alone.values())))
+    # disks of 0.25 m, of which layers have whole numbers
+    assert Reflections().of(scene, "left", 1e-4)["s"].size == pytest.approx(mean, rel=1e-6)
+    assert min(alone.values()) < 0.9 * mean
+
+
+def test_what_is_known_of_uniform_ground_alone_is_not_used() -> None:
+    held = COLUMN["boundary"] | {"bottom": {"type": "velocity", "wave_s": "in"}}
+    scene = build(small(LATTICE | {"boundary": held}))
+    (side,) = Formulas(scene, 1e-4).held_sides.causes({})
+    assert side.how == "unknown"
+    jumping = small(LATTICE, changes={"wave.in": {"type": "constant", "amplitude": 1.0, "start": 0.1}})
+    with pytest.raises(CaseError, match="continuous"):
+        judge_of(jumping).exact(jumping)
+    assert judge_of(scene.case).exact(replace(scene.case, layer=())) is None
+
+
+TIME = np.linspace(0.0, 1.0, 21)
+
+
+def test_runs_with_several_seeds_scatter_about_their_mean_and_lattices_have_none(monkeypatch):
+    case = small(GRAINS, changes={"packing.seed": 7, "run.until": "silent"})
+    seen = []
+
+    def other(given, *_, **__):
+        seen.append(given)
+        motion = given.packing.seed * np.outer(TIME, [1.0, 2.0, 9.0])
+        return Run(work=300, motions={"top": History.of(np.zeros(2), TIME, motion, 3.0 * motion)}), 0.0, 0.0
+
+    monkeypatch.setattr(runner, "measure", other)
+    times = np.array([0.0, 0.13, 0.7])
+    motion = {"velocity": np.zeros((3, 2)), "displacement": np.zeros((3, 2))}
+    (cause,) = cause_of_packing(case, {"top": History(np.zeros(2), times, motion)}, 3).found
+    assert [each.packing.seed for each in seen] == [7, 8, 9]
+    assert all(each.run.until != "silent" for each in seen)  # they must not end before the record
+    # the first is one less than the mean of 7, 8 and 9; of three runs it is nearer to their own mean by √(2/3)
+    np.testing.assert_allclose(cause.parts["top"]["displacement"], -np.outer(times, [1.0, 2.0]) * 1.5**0.5, atol=1e-12)
+    rate = -3.0 * np.outer(times, [1.0, 2.0]) * 1.5**0.5
+    np.testing.assert_allclose(cause.parts["top"]["velocity"], rate, atol=1e-12)
+    assert cause.is_sample
+    assert cause.of_disks
+    with pytest.raises(CaseError, match="no random packing"):
+        cause_of_packing(small(PUSHED), {}, 2)

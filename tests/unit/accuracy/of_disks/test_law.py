@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from small_cases import PUSHED, small
+from plane_motion import recorded
+from small_cases import PUSHED, around, small
 
 from dembound.accuracy.estimate import advise
 from dembound.accuracy.judge import judge_of
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, elastic_twin
-from dembound.accuracy.runner import SHORT, Runner, measure
+from dembound.accuracy.runner import SHORT, Runner
 from dembound.casefile.disks import DiskCase
-from dembound.formulas.history import History, Motions
 from dembound.kinds import with_changes
-from dembound.running import Progress, plan
+from dembound.running import plan
 
 CONFINED: dict[str, Any] = PUSHED | {
     "packing": {"pattern": "A", "size": [20.0, 12.0], "radius": 0.25},
@@ -29,7 +29,7 @@ CONFINED: dict[str, Any] = PUSHED | {
 """A body under a stress at rest, in which a force sends S waves sideways."""
 
 
-ON_THE_GROUND = {"boundary": {"bottom": {"type": "roller"}, "left": {"type": "roller"}, "right": {"type": "roller"}}}
+ON_THE_GROUND = {"boundary": around("roller")}
 STEADY = {key: value for key, value in CONFINED["load"][0].items() if key != "wave"} | {"name": "steady"}
 
 
@@ -112,15 +112,8 @@ def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
     fixed = {"run.time_step": 0.9 * plan(own_twin().case).time_step}
     settled = with_changes(own_twin().case, {"static": CONFINED["static"], **fixed})
     without = with_changes(own_twin().case, fixed)
-    one, other = (measure(case, Progress())[0].motions["beside"].velocity for case in (settled, without))
+    one, other = (recorded(case)["beside"].velocity for case in (settled, without))
     np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
-
-
-def _recorded(gauges: Motions) -> dict[str, History]:
-    return {
-        name: History(each.place, each.time, {q: each.values[q][:, :2] for q in ("velocity", "displacement")})
-        for name, each in gauges.items()
-    }
 
 
 def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
@@ -129,7 +122,7 @@ def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:
     fixed = {"run.time_step": 0.9 * plan(confined()).time_step}
     full = confined({**fixed, "material.elastic_start": False})
     elastic = with_changes(twin.case, fixed)
-    own, other = (_recorded(measure(case, Progress())[0].motions)["beside"] for case in (elastic, full))
+    own, other = (recorded(case)["beside"] for case in (elastic, full))
     scene = plan(elastic).scene
     (cause,) = twin.causes(scene, {"beside": own})
     for quantity in ("velocity", "displacement"):

@@ -5,19 +5,24 @@ import math
 import numpy as np
 import pytest
 from oblique import dashpot_formula
-from small_cases import GRAINS, small
+from scene_tables import ISOTROPIC, lattice
+from small_cases import GRAINS, around, small
 
+from dembound.continuum.sizing import Signal
 from dembound.disks.reflection import measure_side, measured_sides
+from dembound.disks.reflection.arrivals import arrivals_of, over_spectrum
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.reflection.meter import Meter, Reflections
 from dembound.disks.reflection.smeared import by_smeared_supports
+from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
+from dembound.waves import FileWave
 
 DIAMETER, SPEED = 0.5, 1000.0
 LATTICE = {
-    "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.5 * DIAMETER},
-    "material": {"density": 2500.0, "p_wave_speed": SPEED, "fric": 0.5},
-    "boundary": {"right": {"type": "viscous"}},
+    "packing": lattice(8.0, 4.0, DIAMETER),
+    "material": ISOTROPIC,
+    "boundary": around("viscous", "right"),
     "run": {"duration": 0.01},
 }
 
@@ -108,9 +113,82 @@ def test_a_side_is_measured_beside_matched_factors_and_a_continuum() -> None:
     ],
 )
 def test_what_is_refused(side, angles, frequencies, message) -> None:
-    lateral = {"type": "periodic"}
-    case = small(LATTICE, changes={"boundary": {"right": {"type": "viscous"}, "top": lateral, "bottom": lateral}})
+    case = small(LATTICE | {"boundary": around("viscous", "right") | around("periodic", "top", "bottom")})
     with pytest.raises(CaseError, match=message):
         measure_side(case, side, angles, frequencies)
     with pytest.raises(CaseError, match="no side that absorbs"):
         measured_sides(small(LATTICE, changes={"boundary.right": {"type": "free"}}))
+
+
+def test_springs_and_dashpots_along_the_normal_reflect_by_their_impedance() -> None:
+    """R = (ρc − z)/(ρc + z) with z = c + k/iω of all supports per m of the side; on a lattice no P wave becomes S."""
+    table = {"type": "viscoelastic", "distance": 3.0, "alpha_n": 2.0, "beta_p": 0.7}
+    scene = end_scene(small(LATTICE | {"boundary": {"right": table}}), "right")
+    found = by_smeared_supports(scene, "right", [15.0], [0.0])
+    ground, supports = scene.ground, scene.supports
+    length, own = scene.assembly.size[1], supports.component == 0
+    z = (supports.damping[own].sum() + supports.stiffness[own].sum() / (2j * math.pi * 15.0)) / length
+    impedance = ground.density * ground.wave_speeds(0)[0]
+    assert found.same["p"][0, 0] == pytest.approx(abs((impedance - z) / (impedance + z)) ** 2, rel=1e-9)
+    assert found.converted["p"][0, 0] < 1e-20
+
+
+def test_a_side_is_answered_quickly_beside_matched_factors() -> None:
+    case = small(GRAINS, changes={"boundary.right.beta_p": 1.0})
+    found = measure_side(case, "right", [0.0, 30.0], 3, quick=True)
+    assert found.matched is not None
+    assert found.continuum is None
+    # at its own factors nothing comes back, but for what cut bonds turn of P into S
+    assert found.matched.total("p")[:, 0].max() < 1e-4 < found.found.total("p")[:, 0].min()
+    assert measure_side(small(GRAINS), "right", [0.0], 3, quick=True).matched is None  # it has these factors
+    outside = small({**GRAINS, "boundary": {"right": {"type": "outside"}}})
+    with pytest.raises(CaseError, match="--quick: is not possible for side right"):
+        measure_side(outside, "right", quick=True)
+
+
+POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}
+
+
+def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> None:
+    case = small(GRAINS | {"load": [POINT]})
+    ground = ground_of(case)
+    along = [("wave pulse along the normal", (kind,)) for kind in "ps"]
+    assert [(each.name, each.kinds) for each in arrivals_of(case, "top", ground)][:2] == along
+    (spreading,) = arrivals_of(case, "right", ground)
+    assert spreading.name == "waves from load blow"
+    assert spreading.kinds == ("p", "s")
+    # the side is 6 m from the load, which is at its upper end: angles from 0 to atan(4/6)
+    assert spreading.angles.max() == pytest.approx(math.degrees(math.atan2(4.0, 6.0)))
+    assert spreading.angles.min() == pytest.approx(0.0)
+    assert spreading.shares.sum() == pytest.approx(1.0)
+    # cos θ / r of waves that spread in the plane: cos² θ at the same distance of the side
+    shares = np.cos(np.radians(spreading.angles)) ** 2
+    np.testing.assert_allclose(spreading.shares / spreading.shares.max(), shares, rtol=1e-12)
+
+
+def test_a_load_on_the_side_does_not_reach_it_and_without_sources_all_directions_do() -> None:
+    case = small(GRAINS | {"load": [POINT | {"position": [8.0, 2.0]}]})
+    (only,) = arrivals_of(case, "right", ground_of(case))
+    assert only.name == "waves from all directions"
+    np.testing.assert_allclose(only.shares / only.shares[0], np.cos(np.radians(only.angles)))
+
+
+def test_shares_are_weighted_with_the_spectrum_of_the_wave() -> None:
+    """Two tones of amplitudes 2 and 1 have 4/5 and 1/5 of the energy; of a force √f times as large amplitudes.
+
+    The tones last 100 and 1000 periods, so that 1/(2π²·100) = 5e-4 or somewhat more of the energy is far from them.
+    """
+    times = np.arange(20_001) * 0.005
+    values = 2.0 * np.sin(2.0 * np.pi * times) + np.sin(20.0 * np.pi * times)
+    text = "\n".join(f"{time:.3f} {value!r}" for time, value in zip(times, values.tolist(), strict=True))
+    tones = FileWave.model_validate({"type": "file", "path": "tones.txt"}, context={"files": {"tones.txt": text}})
+    shares = np.array([[0.1, 0.3, 0.2], [0.6, 0.3, np.nan]])
+    found = over_spectrum(shares, np.array([1.0, 10.0]), Signal(tones, is_force=False))
+    np.testing.assert_allclose(found, [0.2, 0.3, 0.2], rtol=5e-3)
+    of_force = over_spectrum(shares, np.array([1.0, 10.0]), Signal(tones, is_force=True))
+    np.testing.assert_allclose(of_force, [(4.0 * 0.1 + 10.0 * 0.6) / 14.0, 0.3, 0.2], rtol=5e-3)
+    # halfway between two frequencies in log f the mean of both shares, beyond them that of the nearer one
+    between = over_spectrum(np.array([[0.0], [1.0]]), np.array([0.1, 10.0]), Signal(tones, is_force=False))
+    np.testing.assert_allclose(between, 0.6, rtol=1e-2)
+    np.testing.assert_allclose(over_spectrum(shares, np.array([1.0, 10.0]), None), [0.35, 0.3, 0.2])
+    assert np.isnan(over_spectrum(np.full((2, 1), np.nan), np.array([1.0, 10.0]), None)).all()

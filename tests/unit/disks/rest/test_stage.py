@@ -1,19 +1,23 @@
 """The static stage: where it comes to rest, and its messages where it cannot."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from disk_systems import DENSE
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
-from small_cases import SURROUNDED, small
+from small_cases import SURROUNDED, around, small
 
-from dembound.boundaries.edge import SIDES
 from dembound.disks.rest import stage
-from dembound.disks.rest.loading import LOOK
+from dembound.disks.rest.loading import LEAST, LOOK, Loading
 from dembound.disks.rest.stage import require_stages, settle
+from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import build
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import TENSION
 from dembound.motion.kind import StalledError
+from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m."""
@@ -57,30 +61,22 @@ def test_bonds_may_break_on_the_way_and_stay_broken(bar) -> None:
     assert np.count_nonzero(settled.start.contacts["body"].arrays.state == TENSION) == 1
 
 
+DEEP = {"ground": {"size": [12.0, 20.0]}, "packing.size": [12.0, 8.0], "monitor": []} | {
+    "boundary": around("periodic", "left", "right") | around("outside", "bottom", "top"),
+    "load": [{"name": "house", "force": [0.0, -1e3], "region": [2.0, 18.0, 9.0, 20.0]}],
+    "static": {"boundary": {"bottom": FIXED}},
+}
+SAMPLE = {"boundary": {}, "static": {"stress": [-1e5, -1e5, 0.0]}} | {
+    "hole": [{"name": "s", "type": "circle", "centre": [6.0, 3.0], "radius": 2.0, "keep": "inside"}]
+}
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        (
-            {
-                "ground": {"size": [12.0, 20.0]},
-                "packing.size": [12.0, 8.0],
-                "boundary": {side: {"type": "periodic" if side in ("left", "right") else "outside"} for side in SIDES},
-                "load": [{"name": "house", "force": [0.0, -1e3], "region": [2.0, 18.0, 9.0, 20.0]}],
-                "static": {"boundary": {"bottom": {"type": "fixed"}}},
-                "monitor": [],
-            },
-            "load.house: acts on the surface of the continuum, which the static stage is without",
-        ),
-        (
-            {
-                "boundary": {},
-                "hole": [{"name": "s", "type": "circle", "centre": [6.0, 3.0], "radius": 2.0, "keep": "inside"}],
-                "static": {"stress": [-1e5, -1e5, 0.0]},
-            },
-            "static.stress: acts on no disk at left and right and bottom and top",
-        ),
+        (DEEP, "load.house: acts on the surface of the continuum, which the static stage is without"),
+        (SAMPLE, "static.stress: acts on no disk at left and right and bottom and top"),
     ],
-    ids=["a load on a continuum that is left out", "a sample within its box"],
 )
 def test_what_a_static_stage_cannot_have_is_refused_before_any_step(changes, said) -> None:
     tables = {key: table for key, table in SURROUNDED.items() if key != "outside" or "ground" in changes}
@@ -121,10 +117,7 @@ def test_a_body_that_slides_without_end_stalls(bar, monkeypatch) -> None:
     assert PATIENCE <= len(looks) * LOOK < 2 * PATIENCE
 
 
-LOOSE = {
-    "packing.size": [2.0, 2.5],
-    "material.law": "linearpbond",
-    "material.contact_share": 1.0,
+LOOSE = {"packing.size": [2.0, 2.5], "material.law": "linearpbond", "material.contact_share": 1.0} | {
     "material.fric": 0.5,
     "material.elastic_start": False,
 }
@@ -194,11 +187,8 @@ def test_a_floating_body_is_kept_from_moving_and_turning_as_a_whole(bar) -> None
     state = caught.value.run.state
     x, y = body.positions.T + state.displacement[:2]
     vx, vy, spin = state.velocity
-    momenta = np.stack([
-        np.stack([body.mass * vx, np.zeros(body.count)]),
-        np.stack([body.mass * vy, np.zeros(body.count)]),
-        np.stack([body.mass * ((x - x.mean()) * vy - (y - y.mean()) * vx), body.inertia * spin]),
-    ])  # fmt: skip
+    around_middle = body.mass * ((x - x.mean()) * vy - (y - y.mean()) * vx)
+    momenta = np.array([[body.mass * vx, 0.0 * x], [body.mass * vy, 0.0 * x], [around_middle, body.inertia * spin]])
 
     # local damping takes from each disk alone, so that without a cure something would be left; some 150 disks' parts,
     # each rounded by 1e-16, cancel
@@ -210,3 +200,53 @@ def test_stress_along_a_periodic_axis_is_there_from_the_start(bar) -> None:
     stress = (-1e6, -2e6, 0.4e6)
     settled = settle(scene(bar, boundary=WRAP, static={"stress": stress}, **{"packing.size": [1.0, 1.0]}))
     np.testing.assert_allclose(settled.stress, stress, rtol=1e-12)
+
+
+SHEAR = 0.4e6
+STRESS = {"ratio": 1e-8, "stress": [-1e6, -1e6, SHEAR]}
+LAW = {"material.law": "linearpbond", "material.fric": 2.0, "packing.size": [8.0, 8.0]}
+
+
+def sheared(bar, **changes: object) -> SimpleNamespace:
+    """A lattice at its start, with the displacements (3, n) at which it is at rest under the elastic law."""
+    whole = scene(bar, static=STRESS, **{**LAW, **changes})
+    body = StaticScene(whole, whole.case.static)
+    none = np.zeros((3, whole.count))
+    system = DiskSystem(body.scene, 1e-5, settling=True, load=body.load(none))
+    state = Simulation(body.scene, 1e-5, system=system).state
+    x, y = whole.positions.T
+    # k = K for normals and shears, and two shears a half each without rotation of disks
+    rest = np.stack([-1e6 / K * x + SHEAR / K * y, -1e6 / K * y + SHEAR / K * x, 0.0 * x])
+    return SimpleNamespace(body=body, system=system, state=state, rest=rest, loading=Loading(body, system, none, 1e-4))
+
+
+def out_of_balance(found: SimpleNamespace) -> np.ndarray:
+    """Forces (3, n) of contacts and loads at the present displacements."""
+    for pairs in found.system.contacts.values():
+        pairs.push(found.state.displacement)
+    return found.system.forces.last(found.system.contacts) + found.system.load
+
+
+@pytest.mark.parametrize("share", [0.25, 0.6])
+def test_the_elastic_way_ends_where_the_first_bond_is_at_its_strength(bar, share: float) -> None:
+    """Bonds have half of the shear stress, as contacts are as stiff; nothing is out of balance where it ends."""
+    found = sheared(bar, **{"material.pb_coh": share * 0.5 * SHEAR, "material.geometry": "reference"})
+    found.state.displacement = found.rest
+    assert not found.loading.is_the_answer(found.state)
+    assert found.system.uses_history
+    reached = np.abs(found.state.displacement).max() / np.abs(found.rest).max()
+    assert share - 2.0**-11 < reached <= share
+    assert len(found.system.contacts["body"].take_cracks()) == 0
+
+    found.loading.put_on(found.state)
+    assert np.abs(out_of_balance(found)).max() < 1e-9 * 1e6
+    ends = LOOK * int(np.ceil((1.0 - reached) * LEAST))
+    assert [found.loading.is_rising(step) for step in (0, ends - 1, ends)] == [True, True, False]
+    # half-way there is half of what remains, at the end all
+    left = []
+    for found.state.step in (0, ends // 2, ends):
+        found.loading.put_on(found.state)
+        left.append(np.abs(found.system.load - found.body.load(found.state.displacement)).max())
+    assert left[1] == pytest.approx(0.5 * left[0], rel=LOOK / ends)
+    assert left[2] == 0.0
+    assert left[0] == pytest.approx((1.0 - reached) * 0.5 * 1e6, rel=0.5)  # of a disk at a side, with its shear

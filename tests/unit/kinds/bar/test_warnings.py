@@ -95,7 +95,6 @@ def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, war
         ({"type": "peridynamics", "horizon": 3}, True),
         ({"type": "switch", "horizon": 3, "corrected_ends": True}, False),
     ],
-    ids=str,
 )
 def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: bool) -> None:
     ends = {"left": {"type": "viscous_input", "wave_p": "hit"}, "right": {"type": "viscous"}}
@@ -110,10 +109,8 @@ def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
     # moments of the wave are 0.4 ms/500 apart
     assert list(ends_too_soon(spalling({"run.duration": SPALLED + 1e-6}))) == []
     (warning,) = ends_too_soon(spalling({"run.duration": SPALLED - 1e-6}))
-    assert warning.startswith(
-        "run.duration: is 0.00126567 s, too short for a spall: the wave is not back from the free right end with a "
-        "tension of the strength before 0.00126"
-    )
+    said = "run.duration: is 0.00126567 s, too short for a spall: the wave is not back from the free right end with a "
+    assert warning.startswith(f"{said}tension of the strength before 0.00126")
     assert float(warning.split()[-2]) == pytest.approx(SPALLED, abs=1e-6)
     # from the other end, and from the start of the wave on, of 1.4 ms
     later = {"wave.hit.start": 1e-3}
@@ -150,8 +147,7 @@ def test_a_striker_that_is_bonded_is_warned_of(interface: str, velocity: float, 
 
 
 @pytest.mark.parametrize(
-    ("interface", "section", "is_said"),
-    [("bonded", 4e-4, True), ("bonded", 1e-4, False), ("contact", 4e-4, False)],
+    ("interface", "section", "is_said"), [("bonded", 4e-4, True), ("bonded", 1e-4, False), ("contact", 4e-4, False)]
 )
 def test_a_monitor_between_sections_has_the_stress_of_neither(interface: str, section: float, is_said: bool) -> None:
     monitors = [{"name": str(place), "position": place} for place in (0.175, 0.2, 0.225)]

@@ -31,16 +31,11 @@ def run(spalling, tmp_path):
     return make
 
 
-def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
+def summary_of(*spalls: dict) -> dict:
     """A summary with these spalls, with the entries that warnings use."""
-    return {
-        "duration": duration,
-        "spalls": list(spalls),
-        "breaks_at_ends": {},
-        "open_contacts": [],
-        "crack_strain_rates": None,
-        "energy": {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0},
-    }
+    energy = {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0}
+    rest = {"breaks_at_ends": {}, "open_contacts": [], "crack_strain_rates": None, "energy": energy}
+    return {"duration": 1.0, "spalls": list(spalls), **rest}
 
 
 def test_a_bar_that_spalls_is_not_warned_of(run) -> None:
