@@ -68,6 +68,7 @@ def test_sides_are_all_of_the_outside_of_settled_ground(lab):
     assert (stored >= 0.0).all()
     assert (stored[0] == 0.0).all()
     assert stored.max() > 0.0
+    assert max(abs(entry.error) for entry in ledger.entries) < 1e-9 * stored.max()
 
 
 def test_loads_are_the_rest(lab):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from small_cases import GRAINS, small
 
 from dembound.boundaries.support import Edge
 from dembound.disks.scene import build
@@ -72,3 +73,12 @@ def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
     force = np.zeros((2, 5))
     force[:, 2] = [10.0, 20.0]
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)
+
+
+def test_the_mean_motion_of_a_side_is_that_by_diameters() -> None:
+    scene = build(small(GRAINS))
+    sides = Simulation(scene, choose_step(scene)[0], side_stride=1).sides
+    datum = np.random.default_rng(5).standard_normal((3, scene.count))
+    for name, moved in zip(sides.names, sides.origin(datum), strict=True):
+        edge = scene.edges[name]
+        np.testing.assert_allclose(moved, np.average(datum[:, edge.nodes], axis=1, weights=edge.diameters), rtol=1e-12)

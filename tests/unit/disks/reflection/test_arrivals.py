@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from small_cases import GRAINS, small
+from small_cases import GRAINS, SURROUNDED, small
 
 from dembound.continuum.sizing import Signal
 from dembound.disks.reflection.arrivals import arrivals_of, over_spectrum
@@ -32,6 +32,14 @@ def test_driven_sides_send_waves_along_the_normal_and_loads_spread_them() -> Non
     np.testing.assert_allclose(
         spreading.shares / spreading.shares.max(), np.cos(np.radians(spreading.angles)) ** 2, rtol=1e-12
     )
+
+
+@pytest.mark.parametrize(("side", "angle"), [("bottom", 20.0), ("top", 20.0), ("left", 70.0), ("right", 70.0)])
+def test_an_incident_wave_meets_upright_sides_at_the_complement_of_its_angle(side: str, angle: float) -> None:
+    case = small(SURROUNDED | {"incident": {"type": "sv", "angle": -20.0, "wave": "pulse"}, "wave": GRAINS["wave"]})
+    (only,) = arrivals_of(case, side, ground_of(case))
+    assert only.kinds == ("s",)
+    assert only.angles.tolist() == [angle]
 
 
 def test_a_load_on_the_side_does_not_reach_it_and_without_sources_all_directions_do() -> None:
