@@ -79,6 +79,7 @@ def test_an_attenuation_of_the_bars_is_taken_back():
     lossy = plain._replace(incident=incident, transmitted=transmitted)
     found = found_of(lossy, replace(SETUP, attenuation=alpha))
     np.testing.assert_allclose(found.front, found_of(plain).front, rtol=1e-9, atol=1.0)
+    np.testing.assert_allclose(found.back, found_of(plain).back, rtol=1e-9, atol=1.0)
 
 
 def test_windows_may_be_given_and_move_their_pulse():

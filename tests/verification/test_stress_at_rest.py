@@ -89,6 +89,7 @@ def test_contacts_that_slide_under_a_stress_begin_with_what_they_bear(lab, name:
     whole = found.before or found
     assert np.abs(whole.start.displacement).max() < 1e-15
     assert whole.uniformity.beyond < 1e-12
+    np.testing.assert_allclose(whole.stress, [-5e6, -9e6, 2e6], atol=0.1e6)  # in the blocks of a random packing
     slip = whole.start.contacts["body"].of("slip")
     assert 0.3 < np.count_nonzero(slip) / len(slip) < 0.6
     assert speed(lab, scene, found) < 1e-9

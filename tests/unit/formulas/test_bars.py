@@ -188,3 +188,17 @@ def test_a_lasting_signal_does_not_jump_at_the_end() -> None:
 
     shifted = np.clip((window.time - 0.1234) / 0.2, 0.0, 1.0)
     np.testing.assert_allclose(late, shifted**2 * (3.0 - 2.0 * shifted), atol=1e-4)
+
+
+def test_a_layer_beyond_an_attenuated_bar_takes_its_waves() -> None:
+    # they run as e^(−s√(1 + γ/s) x/c), within (kΔx)²/24 = 6e-5 of their phase; an unmatched layer would return 6 %
+    case = with_changes(scene("attenuation"), {"boundary.right": LAYER | {"nodes": 40}, "bar.attenuation": 2.0})
+    built, s = build_bar(case), np.array([1e4j])
+    chain = Chain(built, built.layers, STEP)
+    response = Response(chain, [0, 60, 80, 100])
+
+    moved = response.velocities(Frequencies.of(s, STEP), {0: np.ones(1, dtype=complex)})
+
+    near, far, end = (response.at(moved, chain.first + node) for node in (60, 80, 100))
+    passed = np.exp(-s * np.sqrt(1.0 + 2.0 * 2.0 * 2740.0 / s) * 0.2 / 2740.0)
+    np.testing.assert_allclose([far / near, end / far], [passed, passed], rtol=2e-4)

@@ -1,10 +1,12 @@
 """Bonds that open, under displacements prescribed step by step."""
 
+from collections import namedtuple
+
 import numpy as np
 import pytest
 
 from dembound.kernels.bar import plane_force, stored
-from dembound.kernels.bar_cracks import soften
+from dembound.kernels.bar_cracks import close_contacts, soften
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Fracture, Range, Rod
 
@@ -127,3 +129,14 @@ def test_strength_follows_the_strain_rate(rate: float, gain: float) -> None:
     counted = max(1.0, 0.5 * STRETCH / (rate * slow))
     assert bonds.opening["limit"][0] / (STRETCH * SPACING) == pytest.approx(gain, abs=0.5 * 0.4343 / counted + 1e-12)
     assert bonds.opening["apart"][0] * bonds.opening["limit"][0] == pytest.approx(OPEN * STRETCH * SPACING, rel=1e-12)
+
+
+Touching = namedtuple("Touching", "left gap push closed")
+
+
+def test_ranges_of_unequal_masses_just_touch_after_an_impact_and_keep_their_momentum() -> None:
+    mobility, v, mean = np.array([1.0, 2.0, 0.5, 1.0]), np.array([0.0, 3.0, -1.0, 0.0]), np.zeros(4)
+    u, momentum = 0.1 * v, np.sum(v / mobility)
+    close_contacts(u, v, mobility, mean, 0.1, Touching(np.array([1]), np.array([0.02]), np.zeros(1), np.array([False])))
+    assert u[1] - u[2] == pytest.approx(0.02, rel=1e-12)
+    assert np.sum(v / mobility) == pytest.approx(momentum, rel=1e-12)

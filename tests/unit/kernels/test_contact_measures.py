@@ -56,6 +56,7 @@ def test_the_slack_of_one_pair_by_hand() -> None:
     torn, shorn = {"friction": 100.0, "tension": 0.3}, {"friction": 100.0, "cohesion": 0.4, "tan_fa": 0.6}
     for moved, pair, changes, room in (
         (two(-0.05), one_pair(overlap=0.1), {}, 0.3 / 4.0),  # 0.5·4·0.15 N left, k_s + μ k_n = 4 N/m
+        (two(-0.05, 0.02), one_pair(overlap=0.1), {}, (0.3 - 2.0 * 0.02) / 4.0),
         (two(0.099), one_pair(overlap=0.1), {}, 0.001 * 0.5),
         # σ = 3 x/2 + 0.75 |θ|, whose two parts change by 1.5 per metre of relative motion at most
         (two(0.04, turn=-0.08), one_pair(INTACT, overlap=1.0), torn, (0.3 - 0.06 - 0.06) / 3.0),

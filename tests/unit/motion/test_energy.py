@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 import tomli_w
-from small_cases import PUSHED, small
+from small_cases import GRAINS, PUSHED, small
 
 from dembound.bar import stability as bar_stability
 from dembound.bar.scene import build_bar
@@ -217,3 +217,12 @@ def test_samples_are_those_of_every_nth_step_however_the_run_is_cut(bar, cuts) -
     assert np.array_equal(eighth.state.side_work, every.state.side_work)
     assert np.any(every.side_samples.record[-1])
     assert np.all(every.state.side_work[:, :, 0].any(axis=1))
+
+
+def test_the_mean_motion_of_a_side_is_that_by_diameters() -> None:
+    scene = build(small(GRAINS))
+    sides = Simulation(scene, choose_step(scene)[0], side_stride=1).sides
+    datum = np.random.default_rng(5).standard_normal((3, scene.count))
+    for name, moved in zip(sides.names, sides.origin(datum), strict=True):
+        edge = scene.edges[name]
+        np.testing.assert_allclose(moved, np.average(datum[:, edge.nodes], axis=1, weights=edge.diameters), rtol=1e-12)

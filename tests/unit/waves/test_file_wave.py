@@ -42,6 +42,8 @@ def test_displacement_is_exact_between_and_beyond_samples(tmp_path: Path) -> Non
     assert late.velocity(np.array([0.999, 1.0, 2.5, 2.501])).tolist() == [0.0, 2.0, 2.0, 0.0]
     assert late.displacement(np.array([0.5, 1.5, 2.25, 9.0])).tolist() == [0.0, 1.0, 2.5, 3.0]
     assert wave == record(tmp_path, TRIANGLE) != late
+    outcrop = record(tmp_path, TRIANGLE, motion="outcrop")  # moves twice as fast as the wave that enters
+    assert outcrop.displacement(t).tolist() == [0.0, 0.125, 0.5, 1.25, 1.5, 1.5]
 
 
 def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:

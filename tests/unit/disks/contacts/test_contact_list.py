@@ -121,6 +121,11 @@ def test_cracks_are_reported_once_and_in_the_order_they_happened(scene) -> None:
     expected = np.column_stack([pairs.first[chosen], pairs.second[chosen]])[[2, 0, 1]].astype(np.int64)
     for step in (7, 9):
         note_places(moved[step], step, pairs)
+    middles = [
+        moved[step][:2, [pairs.first[c], pairs.second[c]]].mean(axis=1)
+        for c, step in zip(chosen, (7, 9, 7), strict=True)
+    ]
+    np.testing.assert_allclose(pairs.place[chosen], middles, rtol=1e-12)
     contacts.note_cracks()
     late = np.flatnonzero(pairs.state == INTACT)[0]
     pairs.cracked[late], pairs.state[late] = 12, SHEAR

@@ -14,4 +14,5 @@ def test_a_plane_between_layers_is_the_upper_ones_whatever_rounding() -> None:
 
     assert layers.layer_of(heights).tolist() == [0, 0, 0, 1, 0]
     np.testing.assert_allclose(layers.at(heights[:3])[0], 0.5 * -2e4 * 0.6, rtol=1e-14)
+    np.testing.assert_allclose(layers.at(np.array([0.0, 0.1]))[:2], -2e4 * np.array([[0.9, 0.8]] * 2), rtol=1e-14)
     assert layers.layer_of(np.array([0.9, 1.0])).tolist() == [0, 0]  # the surface, and above it

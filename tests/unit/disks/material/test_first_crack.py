@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
+from dembound.disks.material.at_rest import pair_forces
 from dembound.disks.material.case_material import make_packed_material
+from dembound.disks.material.constants import strength_of
 from dembound.disks.material.first_crack import FirstCrack, first_crack
+from dembound.disks.material.sliding import strains_of
 from dembound.disks.material.targets import moduli_of
+from dembound.laws.linearpbond import BOND_LIMITS, limit_lines
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
 
@@ -43,3 +47,19 @@ def test_random_packings_crack_earlier_where_contacts_open_and_in_proportion_to_
     assert elastic[0][2:] == elastic[1][2:] == pytest.approx((sheet.young("stress"), sheet.poisson("stress")), rel=1e-6)
     assert loose[1].stress < 0.6 * elastic[1].stress
     assert abs(loose[0].stress) > loose[1].stress
+
+
+@pytest.mark.parametrize(
+    ("strength", "limit"), [({"pb_ten": 1e6}, "tension"), ({"pb_coh": 1e6, "pb_fa": 30.0}, "shear")]
+)
+def test_the_first_bond_breaks_at_the_limits_of_the_law(random_brick: Brick, strength: dict, limit: str) -> None:
+    """Bending of bonds included, by the forces of the endless packing."""
+    material = Material(**MATERIAL, law="linearpbond", **strength)
+    made = make_packed_material(random_brick, material, ())
+    springs = np.stack([made.stiffness.normal, made.stiffness.shear, made.stiffness.bending])
+    strains = strains_of(pair_forces(made) @ [0.0, 1.0, 0.0], springs)
+    slopes, most = limit_lines(made.contact_constants, strength_of(material))
+    reached = (np.einsum("pls,sp->pl", slopes, strains)[:, BOND_LIMITS:] / most[:, BOND_LIMITS:]).max()
+
+    pulled = cracks(random_brick, **strength)[1]
+    assert (pulled.stress, pulled.limit) == (pytest.approx(1.0 / reached, rel=1e-9), limit)

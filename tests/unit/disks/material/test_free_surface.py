@@ -8,8 +8,8 @@ import pytest
 from dembound.casefile.disks.material import Material
 from dembound.disks.material import free_surface
 from dembound.disks.material.case_material import make_packed_material
-from dembound.disks.material.free_surface import _turned, cut_at, skin_depths
-from dembound.disks.material.homogenise import homogenise
+from dembound.disks.material.free_surface import _curved, _turned, cut_at, skin_depths
+from dembound.disks.material.homogenise import Network, homogenise
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.brick import Brick
 from dembound.packings.square import Square
@@ -98,3 +98,15 @@ def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) ->
     assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
     for side, before in of.items():
         assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)
+
+
+def test_contacts_of_a_bent_strip_have_the_elongations_of_its_disks(dense: PackedMaterial) -> None:
+    """Both disks of each contact alone, moved as u_x = xy, u_y = −½x², θ = −x about its middle."""
+    network, middle = Network.of_brick(dense.brick, dense.stiffness), 2.0
+    apart = network._replace(disks=2 * len(network.pairs), pairs=np.arange(network.pairs.size).reshape(-1, 2))
+    x = np.outer(network.vectors[:, 0], [-0.5, 0.5]).ravel()
+    low = dense.brick.positions[network.pairs[:, 0], 1] - middle
+    y = np.column_stack([low, low + network.vectors[:, 1]]).ravel()
+    moved = apart.motion_matrix() @ np.concatenate([x * y, -0.5 * x**2, -x])
+
+    np.testing.assert_allclose(_curved(network, dense.brick.positions, middle), moved, atol=1e-14)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oblique import dashpot_formula
 from scene_tables import ISOTROPIC, lattice
-from small_cases import GRAINS, around, small
+from small_cases import GRAINS, SURROUNDED, around, small
 
 from dembound.continuum.sizing import Signal
 from dembound.disks.reflection import measure_side, measured_sides
@@ -192,3 +192,11 @@ def test_shares_are_weighted_with_the_spectrum_of_the_wave() -> None:
     np.testing.assert_allclose(between, 0.6, rtol=1e-2)
     np.testing.assert_allclose(over_spectrum(shares, np.array([1.0, 10.0]), None), [0.35, 0.3, 0.2])
     assert np.isnan(over_spectrum(np.full((2, 1), np.nan), np.array([1.0, 10.0]), None)).all()
+
+
+@pytest.mark.parametrize(("side", "angle"), [("bottom", 20.0), ("top", 20.0), ("left", 70.0), ("right", 70.0)])
+def test_an_incident_wave_meets_upright_sides_at_the_complement_of_its_angle(side: str, angle: float) -> None:
+    case = small(SURROUNDED | {"incident": {"type": "sv", "angle": -20.0, "wave": "pulse"}, "wave": GRAINS["wave"]})
+    (only,) = arrivals_of(case, side, ground_of(case))
+    assert only.kinds == ("s",)
+    assert only.angles.tolist() == [angle]

@@ -12,11 +12,11 @@ from small_cases import GRAINS, GROUND, SURROUNDED, around, problems_in, small
 from dembound.boundaries.support import Edge
 from dembound.continuum.medium import Layered, Medium
 from dembound.disks.material.layered import LayeredGround
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stability import step_limit
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.disks.surroundings.edges import edge_without
-from dembound.disks.surroundings.frequencies import mean_frequency
+from dembound.disks.surroundings.frequencies import frequencies_of, mean_frequency, share_above
 from dembound.disks.surroundings.mesh import medium_of
 from dembound.kinds.disks.facts import disk_facts
 from dembound.motion.simulation import Simulation
@@ -209,3 +209,9 @@ def test_the_mean_frequency_is_that_of_the_energy() -> None:
     assert mean_frequency(case) == pytest.approx(20.0 * math.gamma(3.0) / (math.sqrt(2.0) * math.gamma(2.5)), rel=1e-3)
     silent = {key: value for key, value in GRAINS.items() if key not in ("wave", "boundary")}
     assert math.isnan(mean_frequency(small(silent)))
+
+
+def test_a_single_frequency_halves_the_energy() -> None:
+    case = small(GRAINS)
+    (wave,), (middle,) = case.wave.values(), frequencies_of(case, ground_of(case), 1)
+    assert share_above(wave, middle) == pytest.approx(0.5, abs=0.15)  # one sample of so short a pulse's spectrum

@@ -72,6 +72,7 @@ def test_the_power_through_a_side_is_that_of_the_waves_that_run_inwards() -> Non
     along = sum(wave.flux(GENERAL)[0] for wave in waves.waves)
 
     assert power_through("left", edges, waves)(times).mean() == pytest.approx(0.5 * 10.0 * along, rel=1e-6)
+    assert power_through("left", edges, waves, 0.25)(times).mean() == pytest.approx(0.125 * 10.0 * along, rel=1e-6)
     assert not power_through("right", edges, waves)(times).any()
     up = waves.waves[0].flux(GENERAL)[1]
     assert power_through("bottom", edges, waves)(times).mean() == pytest.approx(0.5 * 8.0 * up, rel=1e-6)

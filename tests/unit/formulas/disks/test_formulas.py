@@ -240,4 +240,4 @@ def test_waves_of_a_force_in_a_place_have_more_high_frequencies_than_plane_ones(
         found = causes_of_kinks(Dispersion(scene, 2e-4), SWINGING, LARGER)
         (step,) = [each for each in found if each.name.startswith(STEP)]
         sizes.append(step.parts["middle"]["velocity"])
-    assert sizes[1] > 2.0 * sizes[0]
+    assert 2.0 * sizes[0] < sizes[1] < 10.0 * sizes[0]  # by a factor ω they would have 26 times the share

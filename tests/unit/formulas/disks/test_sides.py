@@ -59,6 +59,8 @@ def test_waves_from_all_sides_are_alike(motion: str, along: dict) -> None:
 
 def test_the_undisturbed_ground_carries_the_wave_and_its_surface_doubles_it() -> None:
     grid = Grid.of(scene_of("bottom", {"type": "viscous"}, "p"), 1)
+    lengths = [grid.weights(side).sum() for side in ("left", "right", "bottom", "top")]
+    assert lengths == pytest.approx([10.0, 10.0, 16.0, 16.0])
     step = grid.time_step
     times = step * np.arange(int(0.08 / step))
     incoming = np.zeros((len(times), 2))
