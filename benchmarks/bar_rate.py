@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 import numba
 import numpy as np
-from timing import median_time, timed
+from timing import median_time, small_option, timed
 
 from dembound.bar.fracture import spalls
 from dembound.bar.scene import build_bar
@@ -158,6 +158,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--nodes", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--repeats", type=int, default=9)
+    small_option(parser, nodes=[1000], repeats=1)
     options = parser.parse_args()
     numba.set_num_threads(1)
     stream = fastest_copy()

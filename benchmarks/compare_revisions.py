@@ -23,7 +23,7 @@ from typing import Any
 
 from processes import Worker, WorkerError, whole
 from stepping import DAMPED, LAWS
-from timing import ROOT, in_one_line, machine, quartiles, show, write
+from timing import ROOT, in_one_line, machine, quartiles, show, small_option, write
 
 MARKED = 0.05
 """Relative change that is marked."""
@@ -186,6 +186,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.3, help="CPU seconds of a block")
     parser.add_argument("--commands", type=int, default=5, help="turns of whole commands; 0 for none")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/compare_revisions.json"))
+    small_option(parser, old="HEAD", cases=["zhou2018/tunnel_a"], run=[], rounds=2, seconds=0.05, commands=1)
     options = parser.parse_args()
     old = options.old or ("main" if revision("main") not in (None, revision("HEAD")) else "HEAD~")
     facts = machine()

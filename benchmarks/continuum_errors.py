@@ -9,6 +9,7 @@ layers: in a larger one the disks would disperse the waves that come in over a l
 component with the largest value.
 """
 
+import argparse
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -16,7 +17,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 from scene_tables import ISOTROPIC, ROCK, SIDES, Tables, grains, lattice, monitors
-from timing import show
+from timing import show, small_option
 
 LEAST = 0.01
 """Error (%) from which on rows are judged."""
@@ -171,9 +172,12 @@ def rows(name: str, tables: Tables) -> Iterator[dict[str, Any]]:
 
 
 if __name__ == "__main__":
-    all_rows = []
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    small_option(parser, names=["hole A, close, 0.03"])
+    names, all_rows = tuple(parser.parse_args().names), []
     for name, tables in scenes():
-        if not sys.argv[1:] or name.startswith(tuple(sys.argv[1:])):
+        if not names or name.startswith(names):
             own_rows = list(rows(name, tables))
             print(name, *(f"{row['ratio']:.2f}" for row in own_rows), file=sys.stderr, flush=True)
             all_rows += own_rows

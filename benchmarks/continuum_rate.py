@@ -16,7 +16,7 @@ from typing import Any
 
 import numba
 import numpy as np
-from timing import ROOT, in_one_line, machine, median_time, show, write
+from timing import ROOT, in_one_line, machine, median_time, show, small_option, write
 
 sys.path.insert(0, str(ROOT / "cases" / "outside"))
 
@@ -127,6 +127,7 @@ def main() -> None:
     parser.add_argument("--orders", type=int, nargs="+", default=[4])
     parser.add_argument("--repeats", type=int, default=9)
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/continuum.json"))
+    small_option(parser, sides=[8], repeats=1)
     options = parser.parse_args()
     numba.set_num_threads(1)
     facts = machine()

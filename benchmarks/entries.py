@@ -1,6 +1,6 @@
 """Delay of waves that enter disks relative to waves through the plane of a side, compared with `entries_of`.
 
-    python benchmarks/entries.py
+    python benchmarks/entries.py [--packings A ...]
 
 Columns 160 m high of disks of 1 m, periodic sideways, under a wave 100 disks long from below. The delay of the motion
 follows from the best fit of v(t − (y + late)/c) to 400 disks at 20 to 100 m. The bias of the fit by scatter of the
@@ -8,13 +8,14 @@ packing is the same however waves enter, so it is removed with a run in which th
 delay is known.
 """
 
-from collections.abc import Iterator
+import argparse
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 import tomli_w
 from scene_tables import ISOTROPIC, Tables, grains, lattice, pulse
-from timing import show
+from timing import show, small_option
 
 HEIGHT, WIDE, DISKS = 160.0, 20.0, 400
 KINDS: dict[str, Tables] = {
@@ -68,11 +69,13 @@ def measured(tables: Tables, motion: str) -> tuple[float, float]:
     return float(found.x), entry.late
 
 
-def rows() -> Iterator[dict[str, Any]]:
+def rows(chosen: Sequence[str]) -> Iterator[dict[str, Any]]:
     """Rows of the table."""
     packings = {"A": lattice(WIDE, HEIGHT, 1.0)}
     packings |= {f"{p}, seed {k}": grains(WIDE, HEIGHT, 1.0, WIDE, k, p) for p in "BC" for k in (1, 2)}
     for name, packing in packings.items():
+        if not name.startswith(tuple(chosen)):
+            continue
         for motion in "ps":
             off = 0.0
             for kind in KINDS:
@@ -85,5 +88,9 @@ def rows() -> Iterator[dict[str, Any]]:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--packings", nargs="+", choices=list("ABC"), default=list("ABC"))
+    small_option(parser, packings=["A"])
+    options = parser.parse_args()
     columns = {key: f"{{{key}}}" for key in ("packing", "wave", "side")}
-    show("later, D", columns | {"measured": "{late:.3f}", "formula": "{formula:.3f}"}, rows())
+    show("later, D", columns | {"measured": "{late:.3f}", "formula": "{formula:.3f}"}, rows(options.packings))

@@ -11,8 +11,8 @@ u_own)/2. Times count from when waves enter: with other disks, or beside a conti
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 from error_bound_scenes import scenes
+from timing import small_option
 
 from dembound.accuracy.estimate import advise
 from dembound.accuracy.judge import extended
@@ -194,7 +195,9 @@ def by_bound(found: Mapping[float, list[Line]]) -> None:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--every"]:
-        every(sys.argv[2:])
-    else:
-        main(sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--every", action="store_true")
+    small_option(parser, names=["embedded 30 m along x cosine"])
+    options = parser.parse_args()
+    (every if options.every else main)(options.names)

@@ -13,10 +13,11 @@ other ends, which `MARGIN` has to cover, and for coarser ones, which only matter
 
 from __future__ import annotations
 
+import argparse
 import sys
 
 import numpy as np
-from timing import ROOT
+from timing import ROOT, small_option
 
 sys.path.insert(0, str(ROOT / "tests"))
 
@@ -121,7 +122,9 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--every"]:
-        every(sys.argv[2:])
-    else:
-        main(sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--every", action="store_true")
+    small_option(parser, names=["viscous end, β = 0.7"])
+    options = parser.parse_args()
+    (every if options.every else main)(options.names)

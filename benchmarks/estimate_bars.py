@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from timing import ROOT, in_one_line, machine, show, timed, write
+from timing import ROOT, in_one_line, machine, show, small_option, timed, write
 
 sys.path.insert(0, str(ROOT / "tests"))
 
@@ -49,6 +49,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="NAME")
     parser.add_argument("--json", type=Path, default=ROOT / "results/benchmarks/estimate_bars.json")
+    small_option(parser, scenes=["finite differences, ν = 0.5", "ranges"])
     options = parser.parse_args()
     facts = machine()
     print(in_one_line(facts))

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 from estimate_scenes import FINER, Scene, scenes
-from timing import in_one_line, machine, show, write
+from timing import in_one_line, machine, show, small_option, write
 
 os.environ["NUMBA_NUM_THREADS"] = "1"  # before numba is imported
 
@@ -207,6 +207,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", nargs="+", default=[], help="those whose names begin so; by default all")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/estimates.json"))
+    small_option(parser, scenes=["bar A P β × 1.5", "continuum A bench"])
     options = parser.parse_args()
     from dembound.errors import DemboundError
 

@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import tomli_w
+from timing import ROOT, small_option
 
 os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # before numba is imported; results do not depend on it
 
@@ -90,7 +91,6 @@ def digests(record: Path) -> Found:
 def estimates() -> Iterator[tuple[str, Callable[[], Found]]]:
     """Errors by cause of the scenes of the benchmarks of estimates."""
     from estimate_scenes import scenes
-    from timing import ROOT
 
     sys.path.insert(0, str(ROOT / "tests"))
     import estimated_bars
@@ -180,6 +180,7 @@ def main() -> None:
     write.add_argument("file", type=Path)
     write.add_argument("--sections", nargs="+", choices=SECTIONS, default=list(SECTIONS))
     write.add_argument("--names", nargs="+", default=[])
+    small_option(write, names=["lu2016/table1_row1", "blast A outside", "ranges", "embedded 30 m along x cosine"])
     compare = verbs.add_parser("compare")
     compare.add_argument("before", type=Path)
     compare.add_argument("after", type=Path)

@@ -27,7 +27,7 @@ import numba
 import numpy as np
 from processes import Worker, WorkerError
 from stepping import bar, prepare, set_velocity, steps_for
-from timing import in_one_line, machine, quartiles, show, timed, write
+from timing import in_one_line, machine, quartiles, show, small_option, timed, write
 
 from dembound.motion.simulation import Simulation
 
@@ -225,6 +225,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=9, help="turns of blocks")
     parser.add_argument("--seconds", type=float, default=0.5, help="CPU seconds of a block")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/lammps_bar.json"))
+    small_option(parser, bars=["A40k"], rounds=1, seconds=0.05)
     options = parser.parse_args()
     numba.set_num_threads(1)
     facts = machine() | {"lammps": lammps_version(options)}

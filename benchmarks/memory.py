@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from processes import whole
-from timing import ROOT, in_one_line, machine, show, write
+from timing import ROOT, in_one_line, machine, show, small_option, write
 
 SIZES = (1e4, 3e4, 1e5, 3e5, 1e6)
 
@@ -208,6 +208,7 @@ def main() -> None:
     parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES))
     parser.add_argument("--sizes", nargs="+", type=float, default=list(SIZES))
     parser.add_argument("--json", type=Path, default=ROOT / "results/benchmarks/memory.json")
+    small_option(parser, cases=["elastic", "difference"], sizes=[1e4])
     options = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as place:

@@ -9,12 +9,14 @@ brackets by the formula.
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator
 
 import numpy as np
 import tomli_w
 from error_bound import FINER, far_motion
 from scene_tables import ISOTROPIC, ROCK, SIDES, VISCOUS, lattice, monitors
+from timing import small_option
 
 from dembound.formulas.disks.near_disks import errors_near_loads
 from dembound.formulas.history import History
@@ -62,11 +64,14 @@ def errors(material: dict[str, float], region: tuple[float, float], frequency: f
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    small_option(parser)
+    most = 1 if parser.parse_args().small else None
     print("| material | region | Ricker wave | " + " | ".join(f"{r} m" for r in DISTANCES) + " |")
     print("|---" * (len(DISTANCES) + 3) + "|")
-    for name, material in (("without friction", ROCK), ("with friction", ISOTROPIC)):
-        for region in REGIONS:
-            for frequency in FREQUENCIES:
+    for name, material in (("without friction", ROCK), ("with friction", ISOTROPIC))[:most]:
+        for region in REGIONS[:most]:
+            for frequency in FREQUENCIES[:most]:
                 both = " | ".join(f"{100 * a:.2f} ({100 * b:.2f}) %" for a, b in errors(material, region, frequency))
                 wide = " × ".join(f"{2 * each:g}" for each in region)
                 print(f"| {name} | {wide} m | {frequency:g} Hz | {both} |", flush=True)

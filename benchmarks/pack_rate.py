@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from timing import show
+from timing import show, small_option
 
 from dembound.kernels import pack
 from dembound.packings import bed
@@ -91,6 +91,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sides", type=float, nargs="+", default=[10.0, 50.0], help="of the bricks (m)")
     parser.add_argument("--repeats", type=int, default=5)
+    small_option(parser, sides=[10.0], repeats=1)
     options = parser.parse_args()
     measured(options.sides, options.repeats)
 

@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from timing import ROOT
+from timing import ROOT, small_option
 
 sys.path.insert(0, str(ROOT / "tests"))
 
@@ -239,6 +239,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=20)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--no-grid", action="store_true")
+    small_option(parser, scenes=1)
     options = parser.parse_args()
     kept, at_steps, factors, missed, dearer, searched = [], [], [], 0, [], []
     print(

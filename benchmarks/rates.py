@@ -28,7 +28,7 @@ import numpy as np
 import pack_rate
 from processes import whole
 from stepping import LAWS, bar, prepare, set_in_motion, steps_for
-from timing import ROOT, Times, in_one_line, machine, quartiles, show, timed, write
+from timing import ROOT, Times, in_one_line, machine, quartiles, show, small_option, timed, write
 from traffic import cost_of_step
 
 from dembound.kernels import loop
@@ -174,14 +174,18 @@ def steps(options: argparse.Namespace) -> list[dict[str, Any]]:
 
 
 def copies(options: argparse.Namespace) -> list[dict[str, Any]]:
-    chosen = [(f"{x} × {y} bricks", bar("B", x, y), law) for law in list(LAWS)[:2] for x, y in COPIES]
+    chosen = [
+        (f"{x} × {y} bricks", bar("B", x, y), law)
+        for law in list(LAWS)[:2]
+        for x, y in COPIES[: 3 if options.small else None]
+    ]
     rows = stepped(iter(chosen), options)
     show("Copies of a brick", COLUMNS, rows)
     return rows
 
 
 def sizes(options: argparse.Namespace) -> list[dict[str, Any]]:
-    across = [*SIZES, *([LARGE] if options.large else [])]
+    across = SIZES[:1] if options.small else [*SIZES, *([LARGE] if options.large else [])]
     rows = stepped((("bar of bricks", bar("B", x, 5), "elastic") for x in across), options)
     show("Number of particles", COLUMNS, rows)
     return rows
@@ -194,7 +198,7 @@ def _command(*arguments: str | Path) -> list[str | Path]:
 def commands(options: argparse.Namespace) -> list[dict[str, Any]]:
     """CPU seconds of whole commands in new processes; the first run of each is on an empty cache of compiled code."""
     rows = []
-    for name, arguments in COMMANDS.items():
+    for name, arguments in list(COMMANDS.items())[: 1 if options.small else None]:
         called = [str(ROOT / "cases" / f"{a}.toml") if a in FILES else a for a in arguments]
         with tempfile.TemporaryDirectory() as folder:
             environment = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(Path(folder) / "compiled")}
@@ -243,6 +247,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.3, help="CPU seconds of a block")
     parser.add_argument("--large", action="store_true", help="also 4 million particles and a brick of 10,795 disks")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/rates.json"))
+    small_option(parser, cases=["tunnel_a"], repeats=1, seconds=0.05)
     options = parser.parse_args()
     facts = machine()
     print(in_one_line(facts))

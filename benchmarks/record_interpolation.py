@@ -11,7 +11,7 @@ import argparse
 from collections.abc import Iterator
 
 import numpy as np
-from timing import show
+from timing import show, small_option
 
 from dembound.spectra import response_spectrum
 from dembound.waves import FileWave
@@ -73,7 +73,9 @@ def oscillators() -> Iterator[dict[str, float]]:
 
 def main() -> None:
     """Measure and print both tables."""
-    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    small_option(parser)  # all takes a second
+    parser.parse_args()
     kept = {"frequency (Hz)": "{frequency:g}", "of 100 samples/s": "{share:.2f}"}
     kept |= {way: f"{{{way}:.4f}}" for way in WAYS} | {f"error, {way}": f"{{{way}_error:.2%}}" for way in WAYS}
     rows = ({**row, "share": row["frequency"] * STEP} for row in bursts())

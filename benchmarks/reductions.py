@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from timing import ROOT, in_one_line, machine, show, timed, write
+from timing import ROOT, in_one_line, machine, show, small_option, timed, write
 
 os.environ["NUMBA_NUM_THREADS"] = "1"  # before numba is imported
 
@@ -234,6 +234,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0, help="longest stepping without the reduction, CPU s")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/reductions.json"))
+    small_option(parser, cases=["gallery/p_pulse"], seconds=0.5, repeats=1)
     options = parser.parse_args()
     rows: list[dict[str, Any]] = []
     without: defaultdict[str, list[str]] = defaultdict(list)

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse import diags
 from scipy.sparse.linalg import eigsh
-from timing import in_one_line, machine, show, write
+from timing import in_one_line, machine, show, small_option, write
 
 from dembound import api
 from dembound.casefile.disks import DiskCase
@@ -302,6 +302,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="only lines that contain this text, such as 'B, viscous'")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/reflection_packets.json"))
+    small_option(parser, only="A, free")
     chosen = parser.parse_args()
     facts = machine()
     print(in_one_line(facts))

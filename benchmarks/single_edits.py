@@ -17,7 +17,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from timing import ROOT, small_option
 
 
 def place_of(edit: dict[str, str], package: Path) -> Path:
@@ -67,6 +67,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--all-tests", action="store_true", help="all tests named like the module")
     parser.add_argument("--without-compiling", action="store_true", help="kernels as Python")
+    small_option(parser, names=["matched_s_ratio"])
     given = parser.parse_args()
     edits = tomllib.loads((Path(__file__).parent / "single_edits.toml").read_text(encoding="utf-8"))["edit"]
     lost = 0

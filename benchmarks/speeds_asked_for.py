@@ -7,10 +7,11 @@ asked for, along x.
     python benchmarks/speeds_asked_for.py [SEED]
 """
 
-import sys
+import argparse
 import tempfile
 
 import numpy as np
+from timing import small_option
 
 from dembound import api
 
@@ -56,6 +57,9 @@ def measured(kind: str, seed: int) -> float:
 
 
 if __name__ == "__main__":
-    seed = int(sys.argv[1]) if len(sys.argv) > 1 else 0
-    for kind in "ps":
-        print(f"c_{kind}: {100.0 * (measured(kind, seed) - 1.0):+.4f} % of the speed asked for")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("seed", nargs="?", type=int, default=0)
+    small_option(parser)
+    options = parser.parse_args()
+    for kind in "p" if options.small else "ps":
+        print(f"c_{kind}: {100.0 * (measured(kind, options.seed) - 1.0):+.4f} % of the speed asked for")

@@ -4,7 +4,9 @@ import json
 import os
 import platform
 import subprocess
+import sys
 import time
+from argparse import ArgumentParser
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -98,6 +100,13 @@ def in_one_line(facts: Mapping[str, Any]) -> str:
         f"{facts['cpu']}, {facts['cores']} cores ({', '.join(facts['instruction_sets'])}); Python {facts['python']}, "
         f"numpy {facts['numpy']}, numba {facts['numba']}; revision {facts['revision'] or 'unknown'}"
     )
+
+
+def small_option(parser: ArgumentParser, **small: Any) -> None:
+    """Add --small to a command: its smallest measurement, by these values of options that are not given."""
+    parser.add_argument("--small", action="store_true", help="the smallest measurement, to see that the command runs")
+    if "--small" in sys.argv:
+        parser.set_defaults(json=Path("results/benchmarks/small.json"), **small)
 
 
 def show(title: str, columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]]) -> None:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scene_tables import ISOTROPIC, SIDES, Tables, lattice, pulse
-from timing import show
+from timing import show, small_option
 from walls import DIRECTIONS, QUANTITIES, SPEED, exact, motions
 
 RADII, FINER, PLACES = (1.0, 1.5), 3, np.radians([182, 200, 225, 250, 270, 290, 315, 340, 358])
@@ -137,6 +137,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cavities", nargs="*", type=pairs, default=[*CAVITIES, *HELD_OUT], metavar="N,LONG")
     parser.add_argument("--canyons", nargs="*", type=pairs, default=[*CANYONS], metavar="N,LONG")
+    small_option(parser, cavities=[(10.0, 2.0)], canyons=[(10.0, 2.0)])
     options = parser.parse_args()
     rows, groups = [], {"cavities": [], "cavities held out": [], "canyons": []}  # type: ignore[var-annotated]
 

@@ -2,6 +2,7 @@
 
 import os
 import runpy
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -13,18 +14,17 @@ import traffic
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "benchmarks"
-COMMANDS = (
-    *("rates", "compare_revisions", "lammps_bar", "bar_rate", "estimate_bars", "continuum_rate", "pack_rate", "memory"),
-    *(
-        "reductions",
-        "reflection_packets",
-        "estimates",
-        "golden",
-        "single_edits",
-        "record_interpolation",
-        "soil_on_rock",
-    ),
-)
+WORKERS = ("lammps_worker", "processes", "stepping")
+"""Scripts that others start."""
+
+COMMANDS = [
+    path.stem
+    for path in sorted(FOLDER.glob("*.py"))
+    if path.stem not in WORKERS and "__main__" in path.read_text(encoding="utf-8")
+]
+
+SAID = {"compare_revisions": "| tunnel_a, elastic", "estimates": "| continuum A bench"}
+"""What two print only of a scene that ran, as they go on after one that fails; so does `golden`, which notes errors."""
 
 
 def ended(name: str, *arguments: str) -> object:
@@ -49,6 +49,22 @@ def test_a_python_without_lammps_gives_one_line_and_its_exit_code(tmp_path, caps
     said = capsys.readouterr().err
     assert said.startswith("LAMMPS is missing")
     assert said.count("\n") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_smallest_measurement_of_each_runs(name: str, tmp_path) -> None:
+    if name == "compare_revisions" and not (ROOT / ".git").exists():
+        pytest.skip("no revisions")
+    words = ["write", "golden.json"] if name == "golden" else []
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "NUMBA_NUM_THREADS": "1"}
+    called = [sys.executable, str(FOLDER / f"{name}.py"), *words, "--small"]
+    ended = subprocess.run(called, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    if ended.returncode == 3 and ended.stderr.startswith("LAMMPS is missing"):
+        pytest.skip("LAMMPS is missing")
+    assert ended.returncode == 0, ended.stderr
+    assert SAID.get(name, "\n") in ended.stdout
+    assert all('"error"' not in path.read_text(encoding="utf-8") for path in tmp_path.glob("*.json"))
 
 
 def test_bytes_and_operations_of_a_step() -> None:
