@@ -194,6 +194,9 @@ class PlainPairs:
                 p.slip[c] = shear - rub / k_s
                 rubbed = 0.5 * (rub_before + rub) * (p.slip[c] - slip_before)
                 self.lost[0 if rubbed > 0.0 else 2] += rubbed
+            keeps = limits.geometry == REFERENCE or (limits.geometry == BONDED and p.state[c] == INTACT)
+            if overlap <= 0.0 and not keeps and p.state[c] != INTACT:
+                p.shear[c] = p.slip[c] = 0.0
         force, moment = -push * n + rub * t, 0.0
         side = rub
         if p.state[c] == INTACT:
