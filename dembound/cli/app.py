@@ -52,7 +52,7 @@ class _Commands(TyperGroup):
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names of the commands, as the help lists them."""
-        return sorted(super().list_commands(ctx), key=ORDER.index)
+        return sorted(super().list_commands(ctx), key=lambda name: ORDER.index(name) if name in ORDER else len(ORDER))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Print the commands first: the options, whose panel would be above them, are in a line below."""

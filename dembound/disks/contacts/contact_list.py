@@ -29,9 +29,6 @@ _HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
 GRAIN = 1e-12
 """To which share of the mean diameter places of near pairs are rounded, so that copies of a pair share a row."""
 
-PAIR = ("first", "second", "image", "contact_type")
-"""The fields of pairs."""
-
 _KEPT = ("first", "second", "contact_type", *_HISTORY)
 """The arrays of the pairs, besides their forces, that saved_arrays() returns."""
 
@@ -247,27 +244,23 @@ class ContactList(PairList):
         fresh &= ~self.retired[near].any(axis=1)
         near, image, built = near[fresh], image[fresh], self._built
         at = numbers_of(near, image, built.first, built.second, built.image, len(radii))
-        back = Pairs(*(getattr(built, name)[at[at >= 0]] for name in PAIR))
+        back = Pairs(**{name: each[at[at >= 0]] for name, each in vars(built).items()})
         (first, second), image = near[at < 0].T, image[at < 0]
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
         unit = GRAIN * self.ground.brick.mean_diameter
         vectors = np.round(vectors / unit) * unit  # alike in copies of a brick, whatever other pairs there are
         zone = self.ground.zone_of(positions[:, 1])
         zones = zone[first], zone[second]
-        constants = self.ground.pair_constants(
-            (radii[first], radii[second]),
-            vectors,
-            zones,
-            bonded=False,
-            locked_in=self.locked_in,
-        )
+        both_radii, locked_in = (radii[first], radii[second]), self.locked_in
+        constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
         if self._friction is not None:
             limits = np.repeat(NO_LIMITS, len(first), axis=0)
             limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
             constants = np.column_stack([constants, limits])
         constants, row_of = shared_constants(constants, np.column_stack(zones), self.ground.law.width)
         met = Pairs(first, second, image, types + row_of)
-        return Pairs(*(np.concatenate([getattr(each, name) for each in (back, met)]) for name in PAIR)), constants
+        both = {name: np.concatenate([each, getattr(met, name)]) for name, each in vars(back).items()}
+        return Pairs(**both), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""

@@ -224,14 +224,15 @@ def _spread(scene: DiskScene, outside: Surroundings, source: np.ndarray, place: 
     A wave spreads as 1/√(way), so that with the way r from the source and that over its image in a side, r′, it is
     √(r/r′)/cos θ from each side; contributions of several sides add as squares.
     """
-    way = max(float(np.hypot(*(place - source))), scene.ground.brick.mean_diameter)
+    diameter = scene.ground.brick.mean_diameter
+    way = max(float(np.hypot(*(place - source))), diameter)
     planes = dict(zip(("left", "bottom", "right", "top"), outside.box, strict=True))
     total = 0.0
     for side in outside.sides:
         axis = normal_axis(side)
         ray = place - source
         ray[axis] = 2.0 * planes[side] - source[axis] - place[axis]
-        longer = float(np.hypot(*ray))
+        longer = max(float(np.hypot(*ray)), diameter)  # a place beyond a side may be where the image is
         total += way / longer / max(abs(float(ray[axis])) / longer, FLATTEST) ** 2
     return math.sqrt(total)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from dembound.continuum.sizing import slowest
 from dembound.disks.scene import DiskScene, build
 from dembound.formulas.disks import continuum as of
 from dembound.formulas.disks.beside_wave import Grid, taken_from_waves, undisturbed
-from dembound.formulas.disks.continuum import expected_errors
+from dembound.formulas.disks.continuum import FLATTEST, _spread, expected_errors
 from dembound.formulas.disks.rest import CHANCE, CHANCE_LATTICE, CHANCE_STRESSED, _way, causes_of_rest
 from dembound.formulas.history import History
 from dembound.holes import Circle
@@ -261,3 +262,12 @@ def test_a_wave_on_all_sides_runs_through_the_scene() -> None:
     size, there = (3.0, 4.0), np.array([1.0, 1.0])
     assert _way(Source(EVERYWHERE, 0.0, 1.0, 500.0), there, size) == 5.0
     assert _way(Source((2.0, 1.0, 2.0, 1.0), 0.0, 1.0, 500.0), there, size) == 1.0
+
+
+def test_a_place_at_the_image_of_a_load_beyond_a_side_has_a_finite_share() -> None:
+    outside = SimpleNamespace(box=(0.0, 0.0, 10.0, 8.0), sides=("top",))
+    scene = SimpleNamespace(ground=SimpleNamespace(brick=SimpleNamespace(mean_diameter=0.5)))
+    source = np.array([5.0, 6.0])
+    # ways of 4 m and, instead of none, of a diameter, straight up
+    assert _spread(scene, outside, source, np.array([5.0, 10.0])) == pytest.approx(np.sqrt(4.0 / 0.5) / FLATTEST)
+    assert _spread(scene, outside, source, np.array([5.0, 4.0])) == pytest.approx(np.sqrt(2.0 / 6.0))
