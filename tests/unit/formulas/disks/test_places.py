@@ -14,9 +14,9 @@ from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stepping.scene_parts import walls
 from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS
+from dembound.formulas.disks import near_disks
 from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, OF_WAVES, SHORT, wall_errors
 from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, weights_at
 from dembound.holes import Circle, Rectangle
@@ -207,7 +207,7 @@ def test_short_waves_are_most_wrong_behind_a_hole_but_not_where_the_surface_cuts
         along = number / speed
         behind = along * (LIT + DARK + CREEP * along) / 4.0
         assert errors(kind) == pytest.approx([along * LIT / 4.0, behind], rel=1e-3)
-        assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**walls.FALL, rel=1e-3)
+        assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**near_disks.FALL, rel=1e-3)
         mean = along * (LIT + 0.5 * (DARK + CREEP * along)) / 4.0
         assert errors(kind, height=20.0) == pytest.approx([mean, mean], rel=1e-3)
 
@@ -216,4 +216,4 @@ def test_no_wall_in_a_random_packing_is_between_disks() -> None:
     burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "pulse"}
     hole = {**CAVE, "corners": [3.0, 1.0, 6.0, 3.0]}
     random = small(GRAINS, changes={"hole": [hole], "monitor": [], "load": [burst]})
-    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(walls.RANDOM / 2.0)
+    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(near_disks.RANDOM / 2.0)
