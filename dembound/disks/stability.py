@@ -213,8 +213,10 @@ def reserve(ground: PackedMaterial) -> float:
     return RESERVE * float(ground.overlaps.max()) if ground.has_stiffness else LOOSE * float(ground.brick.radii.min())
 
 
-def largest_overlap(scene: DiskScene, step: float) -> float:
+def largest_overlap(scene: DiskScene, step: float, damp: float | None = None) -> float:
     """Overlap (m) of contacts up to which a step (s) is stable; infinite where their stiffness does not grow with it.
+
+    damp : local damping coefficient, which shortens the limit; None: the material's, with dashpots of contacts.
 
     The stiffness grows with the root of the overlap, so that the overlap goes with the power −4 of the step, also with
     dashpots, whose viscosity grows with the root of the stiffness.
@@ -222,9 +224,9 @@ def largest_overlap(scene: DiskScene, step: float) -> float:
     ground = scene.ground
     if ground.overlaps is None:
         return float("inf")
-    dashed = _loose_viscosity(scene, ground) if scene.case.material.has_dashpots else 0.0
-    damp = 1.0 + scene.case.material.damp
-    limit = _step_of(_loose_eigenvalue(ground) / OPENING * damp, dashed * damp)
+    dashed = _loose_viscosity(scene, ground) if damp is None and scene.case.material.has_dashpots else 0.0
+    more = 1.0 + (scene.case.material.damp if damp is None else damp)
+    limit = _step_of(_loose_eigenvalue(ground) / OPENING * more, dashed * more)
     return reserve(ground) * (limit / step) ** 4
 
 

@@ -274,7 +274,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     rest = UntilAtRest(body, system, loading, stage.on_look, stage.name)
     simulation.track(rest)
     if not scene.ground.law.starts_elastic:
-        simulation.track(Overlaps(largest_overlap(body.scene, step)))
+        simulation.track(Overlaps(largest_overlap(body.scene, step, static.damp)))
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
