@@ -189,9 +189,11 @@ class Law(ABC):
         return self.springs(moduli, radius_i, radius_j)
 
     def overlap_of(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Overlaps (b,) m at which contacts push with forces (b,) N, 0 for pulling ones."""
-        found: np.ndarray = np.maximum(push, 0.0) / self.springs(moduli, radius_i, radius_j).contact_normal
-        return found
+        """Overlaps (b,) m at which contacts push with forces (b,) N, 0 for pulling ones.
+
+        Only asked of laws that do not start elastic; raises NotImplementedError for others.
+        """
+        raise NotImplementedError(f'law "{self.name}" does not start elastic and lacks overlap_of()')
 
     def dashpot_springs(self, constants: np.ndarray) -> np.ndarray:
         """Normal and shear stiffnesses (p, 2) N/m of pairs from which the viscosity of their dashpots follows."""

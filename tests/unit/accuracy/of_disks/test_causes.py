@@ -152,7 +152,7 @@ def test_the_rest_is_that_of_the_given_disks_or_of_a_lattice_of_larger_ones() ->
     assert larger.diameter > 1.5 * own.scene.ground.brick.mean_diameter
     found = [rest_causes(each, scene).found[0].parts["top"]["velocity"] for each in (own, larger)]
     peaks = [np.abs(each.recorded(scene)["top"].velocity[:, :2]).max() for each in (own, larger)]
-    # of what is out of balance at the end of a stage, the part on held disks differs by some tenths
+    # rests under friction differ: with the density changed by 1e-13 the second over the first is 0.73 to 1.0
     assert found[1] * peaks[1] == pytest.approx(found[0] * peaks[0], rel=0.35)
     assert settled_of(own) is not None
     assert not settled_of(own)["elastic"]
