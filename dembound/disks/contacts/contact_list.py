@@ -8,14 +8,13 @@ from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_list import NO_LIMITS, PairList, near_pairs
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, bonds_of
+from dembound.disks.contacts.pairs import ContactHistory, Pairs, bonds_of, push_at_rest
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.contacts.skins import SKIN, cell_of, skins_of
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import BondFactors, brick_constants, limits_of, shared_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
-from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.kernels.near import numbers_of, room
 from dembound.laws.law import Limits
@@ -102,12 +101,13 @@ class ContactList(PairList):
         self._built = pairs
         bonded = bonds_of(self.ground.law, self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
+        closed = np.full_like(none, kernel.CLOSED)
         self.own_types = len(self.bonds)
         self._constants = self.bonds
         slip = self._begun_slip[self.kind]
         self._intact = np.zeros(len(assembly.radii), dtype=np.bool_) if intact is None else intact
         self._list(
-            pairs, ContactHistory(bonded, zero, slip, none, np.full(len(first), -1), self._kept(first, second, none))
+            pairs, ContactHistory(bonded, zero, slip, closed, np.full(len(first), -1), self._kept(first, second, none))
         )
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
@@ -149,8 +149,7 @@ class ContactList(PairList):
         elastic = self.limits._replace(geometry=REFERENCE, **endless)
         limits = elastic if reference else self.limits
         u = self.spread(displacement)
-        still = np.zeros_like(u)
-        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 4)), 0) > 0:
+        if push_at_rest(u, self.arrays, limits) > 0:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
@@ -215,7 +214,9 @@ class ContactList(PairList):
 
     def _drag_of(self, kept: np.ndarray, more: int) -> np.ndarray | None:
         """Last forces of the dashpots of the pairs kept (b,) bool, and of more pairs without any; None: no dashpots."""
-        return None if self.dashpots is None else np.vstack([self.drag[self.live][kept], np.zeros((more, 2))])
+        if self.dashpots is None:
+            return None
+        return np.vstack([self.arrays.drag[:, self.live[kept]].T, np.zeros((more, 2))])
 
     def _remaining(self, moved: np.ndarray, skins: np.ndarray) -> np.ndarray:
         """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones.
@@ -322,7 +323,7 @@ class ContactList(PairList):
         saved |= {"image": self.image, "constants": self._constants}
         saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
-            saved["drag"] = self.drag[self.live]
+            saved["drag"] = self.arrays.drag[:, self.live].T
         saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
@@ -342,6 +343,8 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        self._list(pairs, ContactHistory(**{name: saved[name] for name in _HISTORY}, drag=saved.get("drag")))
+        history = ContactHistory(**{name: saved[name] for name in _HISTORY}, drag=saved.get("drag"))
+        pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
+        self._list(pairs, history._replace(closed=np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)))
         self.arrays.force[:, self.live] = saved["force"].T
         self._cracks = [Cracks(*(saved[f"crack_{field.name}"] for field in fields(Cracks)))]

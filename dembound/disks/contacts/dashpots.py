@@ -29,11 +29,10 @@ class Dashpots:
         return cls(material.dp_nratio, material.dp_sratio, mass, own) if material.has_dashpots else None
 
     def at(self, contacts: Contacts) -> np.ndarray:
-        """Viscosities (b, 2) N·s/m in all places of contacts, 0 where there is none."""
+        """Viscosities (2, b) N·s/m in all places of contacts, 0 where there is none."""
         one, other = self.mass[contacts.first], self.mass[contacts.second]
-        springs = self.law.dashpot_springs(contacts.constants)[contacts.contact_type]
-        ratios = np.array([self.normal, self.shear])
-        return np.ascontiguousarray(viscosity(ratios, springs, one[:, None], other[:, None]))
+        springs = self.law.dashpot_springs(contacts.constants)[contacts.contact_type].T
+        return viscosity(np.array([[self.normal], [self.shear]]), np.ascontiguousarray(springs), one, other)
 
 
 def viscosity(

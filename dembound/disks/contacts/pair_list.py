@@ -83,8 +83,7 @@ class PairList:
     ground : whose law says how many constants of it a pair has.
     bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
-    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. With dashpots, viscosity
-    (places, 2) and drag (places, 2), see `kernels.tables.Dashed`.
+    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     """
 
     ground: PackedMaterial
@@ -92,8 +91,6 @@ class PairList:
     own_types: int
     factors: BondFactors | None
     dashpots: Dashpots | None
-    viscosity: np.ndarray
-    drag: np.ndarray
     bonds: np.ndarray
     _constants: np.ndarray
 
@@ -191,8 +188,9 @@ class PairList:
         if self.factors is not None:
             self.limits = self.limits._replace(factor=self._factors(self.factors))
         if self.dashpots is not None:
-            self.viscosity = self.dashpots.at(self.arrays)
-            self.drag = placed.drag if len(placed.drag) > 0 else np.zeros_like(self.viscosity)
+            viscosity = self.dashpots.at(self.arrays)
+            drag = self.arrays.drag if history.drag is not None else np.zeros_like(viscosity)
+            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag)
         if self._plan is not None:
             assert placed.strays is not None
             self.rows, self.strays = self._plan.rows(placed.in_rows, constants), placed.strays

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
+from dembound.kernels.contacts import BONDED, INTACT, LOST, NONE, REFERENCE, SLID, push_each
 from dembound.kernels.near import ends_of
 from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
@@ -136,8 +136,19 @@ def _pushed(contacts: Contacts, u: np.ndarray, *, slid: bool) -> Contacts:
         cracked=np.full(count, -1),
         force=np.empty((4, count)),
     )
-    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 4)), 0)  # zero step: at rest
+    push_at_rest(u, copies, UNYIELDING)
     return copies
+
+
+NO_DASHPOTS = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0))}
+"""Fields of `Contacts` without dashpots."""
+
+
+def push_at_rest(u: np.ndarray, contacts: Contacts, limits: Any) -> int:
+    """Compute the forces of all pairs at displacements u (3, slots) at rest; returns the number of bonds that broke."""
+    every, lost = np.arange(len(contacts.first), dtype=np.uint32), np.zeros(LOST)
+    push_each(every, u, np.zeros_like(u), 0.0, 0, contacts._replace(**NO_DASHPOTS), limits, lost)
+    return int(lost[3])
 
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
@@ -184,7 +195,7 @@ class ContactHistory(NamedTuple):
 
     kept : None where all bonds may break.
 
-    drag (b, 2), see `Dashed`; None without dashpots, or before they have acted.
+    drag (b, 2) N, see `Contacts`; None without dashpots, or before they have acted.
     """
 
     state: np.ndarray
@@ -201,7 +212,7 @@ class Placed(NamedTuple):
     """Pairs in their places.
 
     arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
-    contact ends of all other pairs, see `PairList`; None without rows. drag : (places, 2) N, or (0, 2).
+    contact ends of all other pairs, see `PairList`; None without rows.
     """
 
     arrays: Contacts
@@ -209,7 +220,6 @@ class Placed(NamedTuple):
     image: np.ndarray
     in_rows: np.ndarray
     strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
-    drag: np.ndarray
 
 
 def in_places(
@@ -262,12 +272,17 @@ def in_places(
         place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
         kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
         force=aligned_zeros(4, count),
+        **NO_DASHPOTS,
         start=start,
         end=end,
+        bound=places + np.searchsorted(first[shared:], begin + np.arange(CHUNKS + 1) * (stop - begin) // CHUNKS),
     )
+    if history.drag is not None:
+        drag = aligned_zeros(2, count)
+        drag[:, live] = history.drag[order].T
+        arrays = arrays._replace(drag=drag)
     strays = None if plan is None else _ends_apart(start, end, 2 * places)
-    drag = np.zeros((0, 2)) if history.drag is None else placed(history.drag[order])
-    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays, drag)
+    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays)
 
 
 def _ends_apart(start: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -308,8 +323,10 @@ def plain_contacts(
         place=np.zeros((0, 2)),
         kept=np.zeros(0, dtype=np.uint8),
         force=np.zeros((4, 0)),
+        **NO_DASHPOTS,
         start=first[:0],
         end=first[:0],
+        bound=np.linspace(0, len(first), CHUNKS + 1).astype(np.int64),
     )
 
 
