@@ -13,10 +13,10 @@ Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, INLINED, U
+from dembound.kernels.common import FAST, INLINED, U
 from dembound.kernels.compiler.lanes import at_most, choose, larger
 from dembound.kernels.compiler.limits import factor_of
-from dembound.kernels.compiler.separate import apart, in_chunks
+from dembound.kernels.compiler.separate import apart
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_law import (
     bond,
@@ -222,22 +222,20 @@ def ends_force(row, force, start, end):
     return fx, fy, moment
 
 
-@in_chunks
-@njit(**FAST)
-def _sum_forces(first_chunk, last_chunk, contacts, total):
-    force, start, end = contacts.force, contacts.start, contacts.end
-    begin = contacts.begin
-    n = start.size - 1 - begin
-    for chunk in range(first_chunk, last_chunk):
-        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
-            i = U(p)
-            total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, force, start, end)
-
-
 @njit(**FAST)
 def sum_forces(contacts, total):
     """Fill total (3, n) of the contacts' particles with the sums of their last forces and moments."""
-    _sum_forces(contacts, total)
+    first, second, force = contacts.first, contacts.second, contacts.force
+    total[:] = 0.0
+    for p in range(first.size):
+        c = U(p)
+        i, j = U(first[c]), U(second[c])
+        total[U(0), i] += force[U(0), c]
+        total[U(1), i] += force[U(1), c]
+        total[U(2), i] += force[U(2), c]
+        total[U(0), j] -= force[U(0), c]
+        total[U(1), j] -= force[U(1), c]
+        total[U(2), j] += force[U(3), c]
 
 
 @njit(**FAST)

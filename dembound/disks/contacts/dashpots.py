@@ -30,9 +30,12 @@ class Dashpots:
 
     def at(self, contacts: Contacts) -> np.ndarray:
         """Viscosities (2, b) N·s/m in all places of contacts, 0 where there is none."""
-        one, other = self.mass[contacts.first], self.mass[contacts.second]
-        springs = self.law.dashpot_springs(contacts.constants)[contacts.contact_type].T
-        return viscosity(np.array([[self.normal], [self.shear]]), np.ascontiguousarray(springs), one, other)
+        return self.between(contacts.first, contacts.second, contacts.constants[contacts.contact_type])
+
+    def between(self, first: np.ndarray, second: np.ndarray, constants: np.ndarray) -> np.ndarray:
+        """Viscosities (2, b) N·s/m of contacts of disks in slots (b,), with their constants (b, c)."""
+        springs = np.ascontiguousarray(self.law.dashpot_springs(constants).T)
+        return viscosity(np.array([[self.normal], [self.shear]]), springs, self.mass[first], self.mass[second])
 
 
 def viscosity(

@@ -14,7 +14,9 @@ from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.contacts import BONDED, INTACT, LOST, NONE, REFERENCE, SLID, push_each
-from dembound.kernels.near import ends_of
+from dembound.kernels.listing import ends_of, keys_of
+from dembound.kernels.near import CODES
+from dembound.kernels.single_pairs import push
 from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
 from dembound.laws.law import Limits
@@ -145,10 +147,17 @@ NO_DASHPOTS = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0))}
 
 
 def push_at_rest(u: np.ndarray, contacts: Contacts, limits: Any) -> int:
-    """Compute the forces of all pairs at displacements u (3, slots) at rest; returns the number of bonds that broke."""
-    every, lost = np.arange(len(contacts.first), dtype=np.uint32), np.zeros(LOST)
-    push_each(every, u, np.zeros_like(u), 0.0, 0, contacts._replace(**NO_DASHPOTS), limits, lost)
-    return int(lost[3])
+    """Compute the forces of all pairs at displacements u (3, slots) at rest; returns the number of bonds that broke.
+
+    Those of pairs in no row are the same bits as in a run, so that what balances them leaves a body at rest.
+    """
+    still, undamped, lost = np.zeros_like(u), contacts._replace(**NO_DASHPOTS), np.zeros((CHUNKS, LOST))
+    reference = limits.geometry == REFERENCE
+    if not reference:
+        push(u, still, 0.0, 0, undamped, limits, lost)
+    others = np.arange(len(contacts.first) if reference else contacts.bound[0], dtype=np.uint32)
+    push_each(others, u, still, 0.0, 0, undamped, limits, lost[0])
+    return int(lost[:, 3].sum())
 
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
@@ -195,7 +204,7 @@ class ContactHistory(NamedTuple):
 
     kept : None where all bonds may break.
 
-    drag (b, 2) N, see `Contacts`; None without dashpots, or before they have acted.
+    force (b, 4), and drag (b, 2) N, see `Contacts`; None without, or before they have acted.
     """
 
     state: np.ndarray
@@ -205,50 +214,53 @@ class ContactHistory(NamedTuple):
     cracked: np.ndarray
     kept: np.ndarray | None = None
     place: np.ndarray | None = None
+    force: np.ndarray | None = None
     drag: np.ndarray | None = None
 
 
 class Placed(NamedTuple):
     """Pairs in their places.
 
-    arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
-    contact ends of all other pairs, see `PairList`; None without rows.
+    arrays : see `PairList`. live : (b,) places of the pairs, those in rows of copies first, ascending; in_rows : number
+    of these. images : (places, 2) int8, see `Pairs`. keys : (b,) int64 of the pairs, of which those in no row ascend,
+    see near.near_keys; their disks are given by slots.
     """
 
     arrays: Contacts
     live: np.ndarray
-    image: np.ndarray
-    in_rows: np.ndarray
-    strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
+    in_rows: int
+    images: np.ndarray
+    keys: np.ndarray
+
+
+SPARE = 8
+"""One in so many places for pairs in no row is spare at least, for pairs that are met."""
 
 
 def in_places(
-    pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None
+    pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None, room: int = 0
 ) -> Placed:
-    """Assign places to pairs, and list the contact ends of each particle.
+    """Assign places to pairs, and list the contact ends of each particle of those in no row.
 
-    slot : (m,) of each particle. constants : (p, 15) of the types of contacts. plan : rows of copies, whose places come
-    first; None: there are none.
+    slot : (m,) of each particle. constants : (p, c + 3) of the types of contacts. plan : rows of copies, whose places
+    come first; None: there are none. room : places for pairs in no row that are needed.
     """
-    first, second = (slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
+    first, second = (slot[particles].astype(np.int64) for particles in (pairs.first, pairs.second))
+    begin, stop = int(slot.min()), int(slot.max()) + 1
     in_rows = np.full(len(first), -1)
     if plan is not None:
         in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
-    keys = (
-        (first.astype(np.int64) * (int(slot.max()) + 1) + second) * 9 + 3 * (pairs.image[:, 0] + 1) + pairs.image[:, 1]
-    )
-    order = np.argsort(np.where(in_rows >= 0, in_rows - len(slot) * 2**32, keys), kind="stable")
-    first, second, in_rows = first[order], second[order], in_rows[order]
+    keys, _ = keys_of(first, second, pairs.image, stop)
+    order = np.argsort(np.where(in_rows >= 0, in_rows - 2**62, keys), kind="stable")
+    first, second, in_rows, keys = first[order], second[order], in_rows[order], keys[order]
     places = 0 if plan is None else plan.count
     shared = int(np.count_nonzero(in_rows >= 0))
-    live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
-    if plan is not None:  # the last type is that of places without a pair
-        nothing = np.pad(NOTHING, (0, constants.shape[1] - len(NOTHING)))
-        constants = np.vstack([constants, nothing])
-    count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
-    if plan is not None:
-        count = -(-count // LANES) * LANES  # each row of forces is aligned
-    start, end = ends_of(first, second, live, begin, stop)
+    singles = len(order) - shared
+    live = np.concatenate([in_rows[:shared], places + np.arange(singles)])
+    count = places + max(singles, room)
+    count = -(-(count + (count - places) // SPARE + LANES) // LANES) * LANES  # each row of forces is aligned
+    nothing = np.pad(NOTHING, (0, constants.shape[1] - len(NOTHING)))
+    constants = np.vstack([constants, nothing])  # the last type is that of places without a pair
 
     def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
         """Values of the pairs in their places."""
@@ -261,7 +273,7 @@ def in_places(
         begin=begin,
         first=placed(first.astype(np.uint32), int(slot[0])),
         second=placed(second.astype(np.uint32), int(slot[0])),
-        contact_type=placed(pairs.contact_type[order].astype(np.uint32), max(0, len(constants) - 1)),
+        contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(constants) - 1),
         constants=of_law(constants),
         began=began_of(constants),
         state=placed(history.state[order], NONE),
@@ -273,28 +285,29 @@ def in_places(
         kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
         force=aligned_zeros(4, count),
         **NO_DASHPOTS,
-        start=start,
-        end=end,
-        bound=places + np.searchsorted(first[shared:], begin + np.arange(CHUNKS + 1) * (stop - begin) // CHUNKS),
+        start=np.zeros(0, np.uint32),
+        end=np.zeros(0, np.uint32),
+        bound=np.zeros(0, np.int64),
     )
+    if history.force is not None:
+        arrays.force[:, live] = history.force[order].T
     if history.drag is not None:
         drag = aligned_zeros(2, count)
         drag[:, live] = history.drag[order].T
         arrays = arrays._replace(drag=drag)
-    strays = None if plan is None else _ends_apart(start, end, 2 * places)
-    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays)
+    arrays = with_ends(arrays, keys[shared:], places, stop)
+    return Placed(arrays, live, shared, placed(pairs.image[order]), keys)
 
 
-def _ends_apart(start: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends.
+def with_ends(arrays: Contacts, keys: np.ndarray, begin: int, stop: int) -> Contacts:
+    """Contacts with the ends of their pairs in no row, whose keys (k,) ascend and whose places start at `begin`.
 
-    start : offsets of the ends of all owners.
+    stop : end of the slots of their disks.
     """
-    others = end >= first
-    owner = np.repeat(np.arange(len(start) - 1), np.diff(start).astype(np.int64))[others]
-    counts = np.bincount(owner, minlength=len(start) - 1)
-    slot = np.flatnonzero(counts)
-    return slot, np.append(0, np.cumsum(counts[slot])), end[others]
+    singles = slice(begin, begin + len(keys))
+    start, end = ends_of(arrays.first[singles], arrays.second[singles], begin, arrays.begin, stop)
+    bounds = arrays.begin + np.arange(CHUNKS + 1) * (stop - arrays.begin) // CHUNKS
+    return arrays._replace(start=start, end=end, bound=begin + np.searchsorted(keys, bounds * stop * CODES))
 
 
 def plain_contacts(

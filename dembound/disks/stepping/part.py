@@ -105,8 +105,8 @@ class DiskPart(Part):
 
     def react(self, why: int, steps: int, state: State) -> None:
         """List the pairs anew if some may be missing."""
-        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
-            self.contacts.search(state.displacement, state.velocity)
+        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.u):
+            self.contacts.list_anew(state.u, state.v)
 
     def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
         """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""

@@ -64,10 +64,10 @@ class Contacts(NamedTuple):
     else −1; place : (b, 2) m, mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may
     break, see kernels/contacts.py; force : (4, b). viscosity : (2, b) N·s/m of normal and shear dashpots of contacts,
     and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none.
-    start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
-    + (0 first, 1 second).
-    bound : (chunks + 1,) pairs in rows come before the first of these; the others, sorted by their first particles, are
-    shared out so that it depends on the particle alone in which chunk a pair is.
+    bound : (chunks + 1,) pairs in rows come before the first of these, the others are sorted by their particles, and
+    shared out so that it depends on these alone in which chunk a pair is; after the last one places are spare.
+    start, end : rows of contact ends of the pairs in no row, one per particle, those before number `begin` empty, end
+    (e,) uint32 = 2·contact + (0 first, 1 second).
     """
 
     begin: int
