@@ -143,7 +143,7 @@ def near_keys(positions, reach, periods, names, usual=np.inf):
 
     positions (n, 2), periods (2,) : see `near_pairs`. names (n,) : the ascending numbers of the disks in keys,
     (i·(largest + 1) + j)·9 + code of the image. usual : m, what most disks reach at most; cells are made for these.
-    Disks of negative reach have no pairs.
+    Disks that reach −inf have no pairs.
     """
     if len(reach) == 0:
         return np.empty(0, np.int64)
@@ -154,7 +154,9 @@ def near_keys(positions, reach, periods, names, usual=np.inf):
     width = 2.0 * usual * MARGIN
     shape = table_shape(high - low, width, len(reach))
     order, start = sort_into_cells(positions, low, width, shape)
-    table = positions[order, 0], positions[order, 1], reach[order], order
+    reaching = reach[order]
+    usually = np.where(reaching > usual, -np.inf, reaching)
+    table = positions[order, 0], positions[order, 1], reaching, usually, order
     picked = np.empty(len(order), np.int64)
     found, room = 4 * len(reach), -1
     while found > room:  # once, unless the disks are crowded
@@ -258,20 +260,17 @@ def reversed_code(code):
 
 
 @njit(**FAST)
-def pick(first, last, i, image, x, y, own, usual, table, picked, count):
-    """Add to picked (count of them) the entries first to last − 1 that may be near disk i, moved to x, y (m)."""
-    across, up, reach, number = table
-    is_wide = own > usual
+def pick(first, last, i, own_image, after, x, y, own, across, up, reach, number, picked, count):
+    """Add to picked (count of them) the entries first to last − 1 near disk i at x, y (m), of numbers above `after`.
+
+    own_image : whether the disk itself is an entry.
+    """
     for k in range(first, last):
         e = U(k)
         dx, dy, r = across[e] - x, up[e] - y, own + reach[e]
         j = np.int64(number[e])
-        later = (j > i) | ((j == i) & (image > 4))
-        usually = reach[e] <= usual
         picked[U(count)] = k
-        count += int(
-            (r > 0.0) & (dx * dx + dy * dy <= r * r * MARGIN) & ((is_wide & usually) | (later & (is_wide | usually)))
-        )
+        count += int((dx * dx + dy * dy <= r * abs(r) * MARGIN) & (j > after) & (own_image | (j != i)))
     return count
 
 
@@ -279,10 +278,10 @@ def pick(first, last, i, image, x, y, own, usual, table, picked, count):
 def search(positions, reach, usual, most, periods, low, high, width, shape, start, table, picked, names, keys):
     """Number of near pairs; fills `keys` as far as there is room, those of each first disk of usual reach sorted.
 
-    table : place along x and y, reach and number of each entry of the cells. Disks that reach further than usual look
-    at all cells so far around them, and others leave pairs with these out.
+    table : place along x and y, reach, usual reach and number of each entry of the cells. Disks that reach further than
+    usual look at all cells so far around them, and others leave out pairs with these.
     """
-    across, up, _, number = table
+    across, up, reach_of, usually, number = table
     found = 0
     columns, rows = shape[0], shape[1]
     span = names[names.size - 1] + 1
@@ -290,7 +289,10 @@ def search(positions, reach, usual, most, periods, low, high, width, shape, star
         begin, own = found, reach[i]
         if own < 0.0:
             continue
-        around = 1 if own <= usual else int((own + most) * MARGIN / width) + 1
+        is_wide = own > usual
+        around = int((own + most) * MARGIN / width) + 1 if is_wide else 1
+        after = -1 if is_wide else i - 1
+        reaching = reach_of if is_wide else usually
         for image in range(CODES):  # by x, then by y; number 4 is the box itself
             a, b = image // 3 - 1, image % 3 - 1
             if (a != 0 and periods[0] == 0.0) or (b != 0 and periods[1] == 0.0):
@@ -301,23 +303,56 @@ def search(positions, reach, usual, most, periods, low, high, width, shape, star
             if x < low[0] - far or x > high[0] + far or y < low[1] - far or y > high[1] + far:
                 continue
             column, row = cell(x, low[0], width), cell(y, low[1], width)
-            count = 0
+            count, own_image = 0, image > 4
             for side in range(-around, min(around, columns - around - 1) + 1):
                 first = (column + side & (columns - 1)) * (rows + 2)
                 if around == 1:
                     at = first + (row & (rows - 1))
-                    count = pick(start[at], start[at + 3], i, image, x, y, own, usual, table, picked, count)
+                    count = pick(
+                        start[at],
+                        start[at + 3],
+                        i,
+                        own_image,
+                        after,
+                        x,
+                        y,
+                        own,
+                        across,
+                        up,
+                        reaching,
+                        number,
+                        picked,
+                        count,
+                    )
                     continue
                 for above in range(-around, min(around, rows - around - 1) + 1):
                     at = first + 1 + (row + above & (rows - 1))
-                    count = pick(start[at], start[at + 1], i, image, x, y, own, usual, table, picked, count)
+                    count = pick(
+                        start[at],
+                        start[at + 1],
+                        i,
+                        own_image,
+                        after,
+                        x,
+                        y,
+                        own,
+                        across,
+                        up,
+                        reaching,
+                        number,
+                        picked,
+                        count,
+                    )
             for p in range(count):
                 e = U(picked[U(p)])
                 j = np.int64(number[e])
-                if math.hypot(across[e] - x, up[e] - y) - own - table[2][e] <= 0.0:
-                    if found < keys.size:
-                        code = image if i <= j else reversed_code(image)
-                        key = (names[min(i, j)] * span + names[max(i, j)]) * CODES + code
-                        insert(keys, begin, found, key)
-                    found += 1
+                dx, dy, r = across[e] - x, up[e] - y, own + reach_of[e]
+                if dx * dx + dy * dy > r * r / MARGIN and math.hypot(dx, dy) - own - reach_of[e] > 0.0:
+                    continue
+                if j < i and reach_of[e] > usual:
+                    continue  # of two that reach further the first finds the second
+                if found < keys.size:
+                    code = image if i <= j else reversed_code(image)
+                    insert(keys, begin, found, (names[min(i, j)] * span + names[max(i, j)]) * CODES + code)
+                found += 1
     return found

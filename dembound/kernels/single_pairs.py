@@ -34,6 +34,8 @@ def _push_chunk(chunk, acting, u, v, step, number, contacts, limits, taken, brea
     """The pairs of a chunk; acting (TILE + 2 LANES,) uint32 is work space."""
     begin_sums(taken, lost)
     first, last = contacts.bound[chunk], contacts.bound[chunk + 1]
+    if first == last:
+        return
     waiting = 0
     while first < last:
         stop = min(first + TILE, last)

@@ -1,4 +1,4 @@
-"""Motion and cracks do not depend, to the bit, on when pairs are listed, nor on how many open ones are.
+"""Motion, cracks and energies do not depend, to the bit, on when pairs are listed, nor on how many open ones are.
 
 A pair that parts forgets its shear, one that meets again has the constants as built, and pairs in rows stay listed. So
 the list needs only to be complete, and a pair that is missing from it would be seen.
@@ -42,7 +42,7 @@ ROCK = HEAP | {
 
 
 def outcome(tables, steps: int, every: int = 0) -> tuple[str, list[list[int]], int]:
-    """A digest of the motion after some steps, broken bonds, and the number of listings; every : more of them."""
+    """A digest of motion and energies after some steps, broken bonds, and the number of listings; every : more of them."""
     planned, listed = plan(small(tables)), 0
     run = Simulation(planned.scene, planned.time_step)
     for each in planned.kind.trackers(run):
@@ -61,8 +61,10 @@ def outcome(tables, steps: int, every: int = 0) -> tuple[str, list[list[int]], i
             for pairs in run.system.contacts.values() if every else ():
                 pairs.list_anew(run.state.u, run.state.v)
     cracks = run.system.take_cracks(steps)
-    motion = np.ascontiguousarray([run.state.displacement, run.state.velocity])
-    return hashlib.sha256(motion.tobytes()).hexdigest(), cracks.pair.tolist(), listed
+    state = run.state
+    motion = np.ascontiguousarray([state.displacement, state.velocity])
+    energy = np.array([*state.work[0], *(each for part in run.system.parts for each in part.stored(state.u))])
+    return hashlib.sha256(motion.tobytes() + energy.tobytes()).hexdigest(), cracks.pair.tolist(), listed
 
 
 @pytest.mark.parametrize(("tables", "steps"), [(HEAP, 1500), (ROCK, 2500)], ids=["heap", "rock"])

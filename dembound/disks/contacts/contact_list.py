@@ -216,7 +216,7 @@ class ContactList(PairList):
         ranks, radii = self._ranks, self.assembly.radii[self._ranks]
         slot = self._slot[ranks]
         own = skins[slot - self._slots.start]
-        reach = np.where(self.retired[ranks], -1.0, radii + own)
+        reach = np.where(self.retired[ranks], -np.inf, radii + own)
         usual = (float(radii.max()) + float(own.min())) * (1.0 + 1e-12)  # of disks that are not fast
         lengths = np.array([length or 0.0 for length in self.periods])
         return near_keys((self.assembly.positions + moved)[ranks], reach, lengths, slot, usual)
@@ -295,7 +295,7 @@ class ContactList(PairList):
         for column, values, empty in columns:
             new = np.empty((*column.shape[:-1], len(met.first)), dtype=column.dtype)
             new[...] = values
-            now = np.concatenate([column[..., before], new], axis=-1)[..., index]
+            now = np.concatenate([column[..., before], new], axis=-1).take(index, axis=-1)
             column[..., before] = empty
             column[..., before.start : before.start + len(source)] = now
 

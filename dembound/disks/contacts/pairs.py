@@ -299,6 +299,10 @@ def in_places(
     return Placed(arrays, live, shared, placed(pairs.image[order]), keys)
 
 
+LEAST_DISKS = 256
+"""Disks whose pairs in no row are one chunk at least: the last pairs of each do not fill their lanes."""
+
+
 def with_ends(arrays: Contacts, keys: np.ndarray, begin: int, stop: int) -> Contacts:
     """Contacts with the ends of their pairs in no row, whose keys (k,) ascend and whose places start at `begin`.
 
@@ -306,7 +310,8 @@ def with_ends(arrays: Contacts, keys: np.ndarray, begin: int, stop: int) -> Cont
     """
     singles = slice(begin, begin + len(keys))
     start, end = ends_of(arrays.first[singles], arrays.second[singles], begin, arrays.begin, stop)
-    bounds = arrays.begin + np.arange(CHUNKS + 1) * (stop - arrays.begin) // CHUNKS
+    shares = min(max((stop - arrays.begin) // LEAST_DISKS, 1), CHUNKS)
+    bounds = arrays.begin + np.arange(CHUNKS + 1) * shares // CHUNKS * (stop - arrays.begin) // shares
     return arrays._replace(start=start, end=end, bound=begin + np.searchsorted(keys, bounds * stop * CODES))
 
 
