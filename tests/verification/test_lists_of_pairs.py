@@ -42,7 +42,10 @@ ROCK = HEAP | {
 
 
 def outcome(tables, steps: int, every: int = 0) -> tuple[str, list[list[int]], int]:
-    """A digest of motion and energies after some steps, broken bonds, and the number of listings; every : more of them."""
+    """A digest of motion and energies after some steps, broken bonds, and how often pairs were listed.
+
+    every : steps after which they are listed in any case; 0: only when they must be.
+    """
     planned, listed = plan(small(tables)), 0
     run = Simulation(planned.scene, planned.time_step)
     for each in planned.kind.trackers(run):

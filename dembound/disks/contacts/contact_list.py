@@ -6,35 +6,27 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.dashpots import Dashpots
-from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import SPARE, ContactHistory, Pairs, bonds_of, push_at_rest, with_ends
+from dembound.disks.contacts.pairs import bonds_of, push_at_rest
+from dembound.disks.contacts.placing import ContactHistory, Pairs
+from dembound.disks.contacts.relisting import HISTORY, RenewedList
 from dembound.disks.contacts.row_plan import RowPlan
-from dembound.disks.contacts.skins import SKIN, skins_of
+from dembound.disks.contacts.skins import SKIN
 from dembound.disks.material.at_rest import StressAtRest, stressed
-from dembound.disks.material.constants import BondFactors, brick_constants, limits_of, shared_constants
+from dembound.disks.material.constants import BondFactors, brick_constants, limits_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
-from dembound.kernels.contacts import NONE, REFERENCE, SHEAR, TENSION
-from dembound.kernels.listing import keys_of, merged
-from dembound.kernels.near import near_keys, pairs_of, room
+from dembound.kernels.contacts import REFERENCE, SHEAR, TENSION
 from dembound.laws.law import Limits
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
-from dembound.pairwise import STRAIN, of_law
 
-_HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
-"""The arrays of the pairs' history variables, in the order of `ContactHistory`."""
-
-GRAIN = 1e-12
-"""To which share of the mean diameter places of near pairs are rounded, so that copies of a pair share a row."""
-
-_KEPT = ("first", "second", "contact_type", *_HISTORY)
+_KEPT = ("first", "second", "contact_type", *HISTORY)
 """The arrays of the pairs, besides their forces, that saved_arrays() returns."""
 
 
-class ContactList(PairList):
+class ContactList(RenewedList):
     """All pairs of a part that are in contact or may soon be, with their history.
 
     Displacements (3, n) are those of all nodes of the scene.
@@ -165,158 +157,6 @@ class ContactList(PairList):
         kernel.sum_forces(self.arrays, force)
         total[:, self.nodes] += force[:, self._slot]
 
-    def is_old(self, u: np.ndarray) -> bool:
-        """Whether at displacements (3, slots) a particle has moved so far that pairs may be missing."""
-        return bool(room(u, self._slots.start, self.origin, self.skins, self.cells) < 0.0)
-
-    def search(self, displacement: np.ndarray) -> None:
-        """List the pairs anew for displacements (3, n) of disks at rest, see `list_anew`."""
-        self.list_anew(self.spread(displacement))
-
-    def list_anew(self, u: np.ndarray, v: np.ndarray | None = None) -> None:
-        """List the pairs anew for displacements u (3, slots): add near pairs, remove distant ones without bond.
-
-        v : (3, slots) m/s, by which fast particles get wider skins; None: all have the same, and pairs at the same
-        place of different bricks share their constants.
-        """
-        self.note_cracks()
-        moved = u[:2, self._slot].T
-        if not np.isfinite(moved).all():
-            return  # the `Watch` of the run raises the error
-        if np.count_nonzero(self.retired) > self._left_out:
-            self._leave_out_retired()
-        skins = np.full(self._slots.stop - self._slots.start, 0.5 * self.skin)
-        if v is not None:
-            skins = skins_of(v, self._slots.start, self.cells, self.time_step, self.ground.brick.mean_diameter)
-        old = self._keys[self._in_rows :]
-        near = self._near(moved, skins)
-        keys, source = merged(near, old, self.arrays.state[self._singles], self._held, self._row_keys)
-        met = self._met(keys[source < 0], source, shares=v is None)
-        begin = self._singles.start
-        if len(keys) > len(self.arrays.first) - begin:
-            self._list(*self._all(), room=len(keys))
-        self._carry(source, met)
-        self.arrays = with_ends(self.arrays, keys, begin, self._slots.stop)
-        self.live = np.concatenate([self.live[: self._in_rows], begin + np.arange(len(keys))])
-        self._keys = np.concatenate([self._keys[: self._in_rows], keys])
-        self._note_strays()
-        self._set_origin(moved.T, skins[self._slot - self._slots.start])
-
-    @property
-    def _singles(self) -> slice:
-        """Places of the pairs in no row."""
-        return slice(int(self.arrays.bound[0]), int(self.arrays.bound[-1]))
-
-    def _keys_of(self, first: np.ndarray, second: np.ndarray, images: np.ndarray) -> np.ndarray:
-        """Keys (b,) of pairs of particles, see near.near_keys, by their slots."""
-        return keys_of(self._slot[first], self._slot[second], images, self._slots.stop)[0]
-
-    def _near(self, moved: np.ndarray, skins: np.ndarray) -> np.ndarray:
-        """Keys of pairs with gaps up to the sum of their skins (slots,) m, of particles that moved (m, 2) m."""
-        ranks, radii = self._ranks, self.assembly.radii[self._ranks]
-        slot = self._slot[ranks]
-        own = skins[slot - self._slots.start]
-        reach = np.where(self.retired[ranks], -np.inf, radii + own)
-        usual = (float(radii.max()) + float(own.min())) * (1.0 + 1e-12)  # of disks that are not fast
-        lengths = np.array([length or 0.0 for length in self.periods])
-        return near_keys((self.assembly.positions + moved)[ranks], reach, lengths, slot, usual)
-
-    def _met(self, keys: np.ndarray, source: np.ndarray, *, shares: bool) -> Pairs:
-        """Pairs (k,) of some keys that are not listed; contacts of the brick that had parted have their constants.
-
-        source : of all pairs, see `merged`; shares : whether constants are shared.
-        """
-        both, image = pairs_of(keys, self._slots.stop)
-        first, second = (self.layout.node[both] - self.nodes.start).T
-        kind, built = np.zeros(len(keys), dtype=np.int64), self._built
-        at = np.searchsorted(self._built_keys, keys, sorter=self._built_order)
-        own = self._built_order[np.minimum(at, len(self._built_order) - 1)] if len(self._built_order) > 0 else at
-        parted = self._built_keys[own] == keys if len(self._built_order) > 0 else np.zeros(len(keys), dtype=np.bool_)
-        own = own[parted]
-        first[parted], second[parted], image[parted] = built.first[own], built.second[own], built.image[own]
-        kind[parted] = built.contact_type[own]
-        new = ~parted
-        kind[new] = self._enter(first[new], second[new], image[new], source, shares=shares)
-        return Pairs(first, second, image, kind)
-
-    def _enter(
-        self, first: np.ndarray, second: np.ndarray, image: np.ndarray, source: np.ndarray, *, shares: bool
-    ) -> np.ndarray:
-        """Types (k,) of new pairs: rows of constants, in layered ground with limits, that no pair uses any more."""
-        if len(first) == 0:
-            return first
-        positions, radii = self.assembly.positions, self.assembly.radii
-        vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
-        unit = GRAIN * self.ground.brick.mean_diameter
-        vectors = np.round(vectors / unit) * unit  # alike in copies of a brick, whatever other pairs there are
-        zones = self.ground.zone_of(positions[first, 1]), self.ground.zone_of(positions[second, 1])
-        both_radii, locked_in = (radii[first], radii[second]), self.locked_in
-        constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
-        if self._friction is not None:
-            limits = np.repeat(NO_LIMITS, len(first), axis=0)
-            limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
-            constants = np.column_stack([constants, limits])
-        row_of = np.arange(len(constants))
-        if shares:
-            constants, row_of = shared_constants(constants, np.column_stack(zones), self.ground.law.width)
-        used = np.zeros(len(self._constants), dtype=np.bool_)
-        used[: len(self.bonds)] = True
-        used[self.arrays.contact_type[self._singles][source[source >= 0]]] = True
-        row = np.flatnonzero(~used)[: len(constants)]
-        if len(row) < len(constants):
-            before, more = len(self._constants), len(constants) + len(self._constants) // SPARE
-            self._constants = np.vstack([self._constants, np.zeros((more, self._constants.shape[1]))])
-            self._list(*self._all())
-            row = np.concatenate([row, before + np.arange(len(constants) - len(row))])
-        self._constants[row] = constants
-        own, limits = np.split(constants, [self.ground.law.width + STRAIN], axis=1)
-        self.arrays.constants[row] = of_law(own)
-        for name, values in zip(self.limits._fields, limits.T, strict=False):
-            getattr(self.limits, name)[row] = values
-        return row[row_of]
-
-    def _carry(self, source: np.ndarray, met: Pairs) -> None:
-        """Fill the places of pairs in no row: with pairs listed before, by their number (b,), or with met ones in turn."""
-        arrays, before, is_met = self.arrays, self._singles, source < 0
-        index = np.where(is_met, before.stop - before.start + np.cumsum(is_met) - 1, source)
-        first, second = self._slot[met.first], self._slot[met.second]
-        nowhere, nothing = int(self._slot[0]), len(arrays.constants) - 1
-        columns = [
-            (arrays.first, first, nowhere), (arrays.second, second, nowhere),
-            (arrays.contact_type, met.contact_type, nothing), (arrays.state, NONE, NONE), (arrays.shear, 0, 0),
-            (arrays.slip, 0, 0), (arrays.closed, kernel.OPEN, kernel.OPEN), (arrays.cracked, -1, -1),
-            (arrays.place.T, 0, 0), (arrays.kept, 0, 0), (arrays.force, 0, 0), (self._images.T, met.image.T, 0),
-        ]  # fmt: skip
-        if self.dashpots is not None:
-            viscosity = self.dashpots.between(first, second, arrays.constants[met.contact_type])
-            columns += [(arrays.viscosity, viscosity, 0), (arrays.drag, 0, 0)]
-        if self.factors is not None:
-            columns.append((self.limits.factor, self._factors_of(self.factors, met.first, met.contact_type), 1))
-        for column, values, empty in columns:
-            new = np.empty((*column.shape[:-1], len(met.first)), dtype=column.dtype)
-            new[...] = values
-            now = np.concatenate([column[..., before], new], axis=-1).take(index, axis=-1)
-            column[..., before] = empty
-            column[..., before.start : before.start + len(source)] = now
-
-    def _all(self) -> tuple[Pairs, ContactHistory]:
-        """All pairs with their history."""
-        history = ContactHistory(*(self.of(name) for name in (*_HISTORY, "place")), force=self.force, drag=self._drag)
-        return Pairs(*self.pairs, self.image, self.of("contact_type")), history
-
-    @property
-    def _drag(self) -> np.ndarray | None:
-        """Last forces (b, 2) of the dashpots of the pairs; None without dashpots."""
-        return None if self.dashpots is None else self.arrays.drag[:, self.live].T
-
-    def _leave_out_retired(self) -> None:
-        """Remove the pairs of particles that meet no others any more."""
-        self._left_out = int(np.count_nonzero(self.retired))
-        pairs, history = self._all()
-        stays = ~(self.retired[pairs.first] | self.retired[pairs.second])
-        left = Pairs(**{name: each[stays] for name, each in vars(pairs).items()})
-        self._list(left, ContactHistory(*(None if each is None else each[stays] for each in history)))
-
     def _kept(self, first: np.ndarray, second: np.ndarray, kept: np.ndarray) -> np.ndarray:
         """Whether the bonds between particles (b,) may break, (b,) uint8, if it was kept (b,) before."""
         return np.maximum(
@@ -334,7 +174,7 @@ class ContactList(PairList):
         self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
         pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
-        history = ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place")))
+        history = ContactHistory(*(other.of(name)[left] for name in (*HISTORY, "place")))
         self._list(pairs, history._replace(kept=self._kept(first, second, other.of("kept")[left])))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
@@ -383,7 +223,7 @@ class ContactList(PairList):
         saved |= {"image": self.image, "constants": self._constants}
         saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
-            saved["drag"] = self._drag
+            saved["drag"] = self.drag
         saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
@@ -403,7 +243,7 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        history = ContactHistory(**{name: saved[name] for name in _HISTORY}, drag=saved.get("drag"))
+        history = ContactHistory(**{name: saved[name] for name in HISTORY}, drag=saved.get("drag"))
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))

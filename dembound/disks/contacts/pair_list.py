@@ -4,10 +4,11 @@ import numpy as np
 
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, acting, in_places
+from dembound.disks.contacts.pairs import acting
+from dembound.disks.contacts.placing import ContactHistory, Pairs, in_places
 from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels.contacts import INTACT, REACHED
+from dembound.kernels.contacts import REACHED
 from dembound.kernels.listing import keys_of, sorted_into
 from dembound.kernels.tables.contacts import Cells, PairRows
 from dembound.laws.law import Limits, in_columns
@@ -133,11 +134,6 @@ class PairList:
         listed = (at >= 0) & (self._keys[at] == keys) if len(self._keys) > 0 else at >= 0
         return listed, np.where(listed, at, -1)
 
-    def _counted(self, chosen: np.ndarray) -> np.ndarray:
-        """Number (m,) of the chosen pairs (b,) that each particle has."""
-        ends = np.concatenate([particles[chosen] for particles in self.pairs])
-        return np.bincount(ends, minlength=len(self.assembly.radii))
-
     def reached(self) -> tuple[np.ndarray, np.ndarray]:
         """First and second particle (b,) of the bonds that have reached their strength, but never break."""
         at = self.arrays.kept == REACHED
@@ -147,17 +143,11 @@ class PairList:
         first, second = self.pairs
         return first[own], second[own]
 
-    def freshly_torn(self) -> np.ndarray:
-        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
-        return self._counted(self.of("cracked") >= 0) > 0
-
-    def bonds_left(self) -> np.ndarray:
-        """Number (m,) of intact bonds of every particle."""
-        return self._counted(self.of("state") == INTACT)
-
     def coordination(self, geometry: int) -> np.ndarray:
         """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
-        return self._counted(acting(self.arrays, geometry)[self.live])
+        chosen = acting(self.arrays, geometry)[self.live]
+        ends = np.concatenate([particles[chosen] for particles in self.pairs])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
 
     def _set_origin(self, displacement: np.ndarray, skins: np.ndarray) -> None:
         """Store the displacements (2, m) m from which later motion is counted, and the skins (m,) m of particles."""

@@ -7,7 +7,8 @@ import numpy as np
 
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import Rows, elastic_constants, with_special
-from dembound.disks.contacts.pairs import NO_DASHPOTS, plain_contacts
+from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.contacts.placing import NO_DASHPOTS
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.damped_ground import DiskMemories

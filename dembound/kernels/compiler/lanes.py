@@ -410,7 +410,8 @@ _ROWS = types.Tuple((indices, types.uint64))
 @lower_builtin(operator.getitem, types.Array, _ROWS)
 def _rows(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     table = context.make_array(sig.args[0])(context, builder, args[0])
-    return gathered_rows(builder, table.data, *cgutils.unpack_tuple(builder, args[1]), table.shape)
+    rows, column = cgutils.unpack_tuple(builder, args[1])
+    return gathered_rows(builder, table.data, rows, column, table.shape)
 
 
 def gathered_rows(builder: Any, first: Any, rows: Any, column: Any, shape: Any) -> Any:
