@@ -136,7 +136,7 @@ class Lines(Shown):
         self.began = self.begun = now()
         self.next = INTERVAL
         """Seconds of a static stage after which the next line is printed."""
-        self.lines: deque[tuple[float, int, float]] = deque(maxlen=1 + round(PACE / INTERVAL))
+        self.lines: deque[tuple[float, int, float]] = deque(maxlen=round(PACE / INTERVAL))
         """Of the last lines, and the first block: time, steps, and seconds of compiling, which no rate includes."""
         self.stage = ""
         """The static stage of the last line."""
