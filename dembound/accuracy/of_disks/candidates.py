@@ -25,7 +25,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.motion.kind import Plan
 from dembound.words import percent
 
-LONGEST, PART = 14.0, 0.2
+LONGEST, PART = 12.0, 0.2
 """CPU seconds after which a search for all bounds ends, or this part of the given run if that is more, as counted: not
 measured, so that it finds the same on every machine. Each bound may take what those before have left of its part."""
 
