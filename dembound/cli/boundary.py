@@ -31,8 +31,8 @@ PRINTED = 15.0
 LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
 
-LONGEST, FEWEST = 20.0, 3
-"""CPU seconds within which sides are measured by default, and least number of frequencies."""
+LONGEST = 20.0
+"""CPU seconds within which sides are measured by default."""
 
 COMPARED = (0.0, 30.0)
 """Angles (degrees) at which types of a side are compared by default."""
@@ -113,7 +113,7 @@ def boundary(
     each = seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
     if not quick and each * count > longest:
         fewer, all_of = int(longest / each), f"{count} frequencies take about {each * count:.0f} s of CPU time"
-        if hertz or types or fewer < FEWEST:
+        if hertz or types or fewer < 1:
             fit = f"at most {longest:g} s are allowed; --longest {each * count:.0f} allows it"
             raise CaseError([f"boundary: {all_of}, {fit}, --quick takes less, --side measures one side"])
         err.print(f"{loaded.name}: {all_of}, so {fewer} are measured; --longest {each * count:.0f} measures all")

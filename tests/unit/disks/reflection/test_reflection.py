@@ -135,7 +135,7 @@ def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None
 
 
 def test_sides_are_measured_within_a_time_at_fewer_frequencies_or_not_at_all(dembound, tmp_path) -> None:
-    """One disk, 12 frequencies of 0.08 s and 13 angles of 2.2e-5 s: 0.97 s in all, so 0.5 s is enough for 6."""
+    """One disk: 12 frequencies of 0.08 s, 0.96 s in all, so 0.5 s is enough for 6."""
     (tmp_path / "strip.toml").write_text(small(STRIP).text)
     fewer = dembound("boundary", "strip.toml", "--side", "right", "--longest", 0.5)
     assert fewer.code == 0, fewer.err
