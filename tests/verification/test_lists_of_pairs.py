@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.contacts import contact_list, skins
+from dembound.disks.contacts import relisting, skins
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
@@ -86,7 +86,7 @@ def test_listings_change_no_bit(tables, steps, monkeypatch) -> None:
 
 def test_a_missing_pair_is_seen(monkeypatch) -> None:
     *usual, _ = outcome(HEAP, 1500)
-    found_by = contact_list.near_keys
-    monkeypatch.setattr(contact_list, "near_keys", lambda *words: found_by(*words)[::2])
+    found_by = relisting.near_keys
+    monkeypatch.setattr(relisting, "near_keys", lambda *words: found_by(*words)[::2])
     *found, _ = outcome(HEAP, 1500)
     assert found != usual

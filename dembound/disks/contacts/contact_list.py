@@ -195,21 +195,6 @@ class ContactList(RenewedList):
         pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
         self.note_cracks()
 
-    def note_cracks(self) -> None:
-        """Record the bonds that broke since the last call, with their positions."""
-        if not (self.arrays.cracked >= 0).any():
-            return
-        cracked, state = self.of("cracked"), self.of("state")
-        broken = np.flatnonzero(cracked >= 0)
-        first, second = (particles[broken] for particles in self.pairs)
-        order = np.lexsort((second, first, cracked[broken]))
-        broken, first, second = broken[order], first[order], second[order]
-        half = 0.5 * self._constants[self.of("contact_type")[broken], :2]
-        middle = self.assembly.positions[first] + half + self.of("place")[broken]
-        both = np.column_stack([first, second]) + self.nodes.start
-        self._cracks.append(Cracks(cracked[broken], both, middle, state[broken] == SHEAR))
-        self.arrays.cracked[:] = -1
-
     def take_cracks(self) -> Cracks:
         """The bonds that broke since the last call."""
         self.note_cracks()

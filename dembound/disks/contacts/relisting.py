@@ -9,9 +9,10 @@ from dembound.disks.contacts.placing import SPARE, ContactHistory, Pairs, with_e
 from dembound.disks.contacts.skins import skins_of
 from dembound.disks.material.constants import shared_constants
 from dembound.kernels import contacts as kernel
-from dembound.kernels.contacts import NONE
+from dembound.kernels.contacts import NONE, SHEAR
 from dembound.kernels.listing import keys_of, merged
 from dembound.kernels.near import near_keys, pairs_of, room
+from dembound.motion.part import Cracks
 from dembound.pairwise import STRAIN, of_law
 
 HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
@@ -34,6 +35,7 @@ class RenewedList(PairList):
     _built_order: np.ndarray
     _held: np.ndarray
     _left_out: int
+    _cracks: list[Cracks]
 
     def is_old(self, u: np.ndarray) -> bool:
         """Whether at displacements (3, slots) a particle has moved so far that pairs may be missing."""
@@ -189,3 +191,18 @@ class RenewedList(PairList):
         left = Pairs(**{name: each[stays] for name, each in vars(pairs).items()})
         columns: list[Any] = [None if each is None else each[stays] for each in history]
         self._list(left, ContactHistory(*columns))
+
+    def note_cracks(self) -> None:
+        """Record the bonds that broke since the last call, with their positions."""
+        if not (self.arrays.cracked >= 0).any():
+            return
+        cracked, state = self.of("cracked"), self.of("state")
+        broken = np.flatnonzero(cracked >= 0)
+        first, second = (particles[broken] for particles in self.pairs)
+        order = np.lexsort((second, first, cracked[broken]))
+        broken, first, second = broken[order], first[order], second[order]
+        half = 0.5 * self._constants[self.of("contact_type")[broken], :2]
+        middle = self.assembly.positions[first] + half + self.of("place")[broken]
+        both = np.column_stack([first, second]) + self.nodes.start
+        self._cracks.append(Cracks(cracked[broken], both, middle, state[broken] == SHEAR))
+        self.arrays.cracked[:] = -1
