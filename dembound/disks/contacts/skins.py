@@ -5,7 +5,7 @@ import numpy as np
 from dembound.kernels.listing import ahead_of_others
 from dembound.kernels.tables.contacts import Cells
 
-SKIN, MOVING = 0.05, 0.12
+SKIN, MOVING = 0.05, 0.25
 """Skins of two disks together over the mean diameter: at the start, and once disks move."""
 
 AHEAD = 20.0
