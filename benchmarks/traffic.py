@@ -43,7 +43,7 @@ UPDATED_PAIR, REFERENCE_PAIR = 72.0, 54.0
 bond 18, force and moments 12, sums 6."""
 
 UPDATED_STRAY, REFERENCE_STRAY = 91.0, 75.0
-"""Operations of pairs that are computed one by one (contacts.py), with updated and with reference geometry."""
+"""Operations of pairs that are in no row (single_pairs.py), with updated and with reference geometry."""
 
 
 class Cost(NamedTuple):
