@@ -1,7 +1,7 @@
 """A part of bonded disks, the body or its free-field column, and the seam that couples them."""
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -78,7 +78,9 @@ class DiskPart(Part):
         self.dashes = True
         self.rows = rows
         self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self._law: tuple[tuple[Any, ...], NamedTuple] | None = None
         self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, LOST))
+        self._links = Links(rows, self._fastest, self._damped)
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
@@ -86,16 +88,27 @@ class DiskPart(Part):
         return self.ground.law.name if self.uses_history else self.ground.law.linear
 
     def law(self) -> NamedTuple:
-        """The arrays of the law in use; before a history-dependent one begins, a linear law that may check contacts."""
-        links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
+        """The arrays of the law in use; before a history-dependent one begins, a linear law that may check contacts.
+
+        It is the same bundle as long as neither pairs nor flags have changed.
+        """
+        contacts = self.contacts
         if self.memories is not None:
-            return DampedLinks(links, self.memories.arrays)
+            return DampedLinks(self._links, self.memories.arrays)
         if contacts is None or not (self.uses_history or self.watches):
-            return links
+            return self._links
+        flags = self.uses_history, self.dashes, self.stops_at_breaks, contacts.keeps_slip
+        known = contacts.arrays, contacts.cells, *flags
+        if self._law is None or any(one is not other for one, other in zip(known, self._law[0], strict=True)):
+            self._law = known, self._law_of(contacts)
+        return self._law[1]
+
+    def _law_of(self, contacts: ContactList) -> NamedTuple:
+        """The law with pairs; those with a history are in rows of copies if their disks are."""
         pairs = contacts.arrays if self.dashes else contacts.arrays._replace(**NO_DASHPOTS)
         listed = (pairs, contacts.limits, contacts.origin, contacts.skins, contacts.cells)
         if not self.uses_history:
-            return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
+            return WatchedLinks(self._links, *listed, contacts.arms, self._way, contacts.keeps_slip)
         law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
         if contacts.rows is None:
             return law
@@ -191,6 +204,7 @@ class FreeFieldSeam(Tie):
         self._row = row_of[2 * seam.contact_type + seam.twin_is_second].astype(np.uint32)
         self._neighbour = slot[seam.neighbour].astype(np.uint32)
         self._ends: tuple[Contacts, np.ndarray] | None = None
+        self._bundle: tuple[tuple[Any, ...], NamedTuple] | None = None
 
     def let_go(self, disks: np.ndarray) -> None:
         """Exert no forces from now on on the disks (n,) bool that have broken off or lost all their bonds."""
@@ -204,6 +218,14 @@ class FreeFieldSeam(Tie):
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """The rows of contacts across the seam, under the law in use in the column."""
+        contacts = self.column.contacts
+        known = supported, self._let_go, contacts.arrays if contacts and self.column.uses_history else None
+        if self._bundle is None or any(one is not other for one, other in zip(known, self._bundle[0], strict=True)):
+            self._bundle = known, self._bundle_of(supported)
+        return self._bundle[1]
+
+    def _bundle_of(self, supported: np.ndarray) -> NamedTuple:
+        """See `bundle`."""
         seam = self.seam
         counts = np.zeros(len(supported), dtype=np.uint32)
         counts[np.searchsorted(supported, seam.node)] = np.where(self._let_go[seam.node], 0, seam.contact_counts)

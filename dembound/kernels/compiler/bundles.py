@@ -144,7 +144,7 @@ class Written:
     """
 
     def __init__(self, bundle: NamedTuple) -> None:
-        self._parts = _parts(bundle)
+        self._bundle, self._parts = bundle, _parts(bundle)
         self._first = list(accumulate(map(_size, self._parts), initial=0))
         self.numbers = np.zeros(self._first.pop(), dtype=np.int64)
         self.address = int(self.numbers.ctypes.data)
@@ -153,6 +153,8 @@ class Written:
 
     def takes(self, bundle: NamedTuple) -> bool:
         """Write the changes of another bundle over this one; False, without writing, if its type differs."""
+        if bundle is self._bundle:
+            return True
         parts = _parts(bundle)
         if len(parts) != len(self._parts):
             return False
@@ -161,7 +163,7 @@ class Written:
             return False
         for k in changed:
             _put(parts[k], self.numbers, self._first[k], self.address)
-        self._parts = parts
+        self._bundle, self._parts = bundle, parts
         return True
 
 
