@@ -231,3 +231,22 @@ def test_sides_stay_that_differ_along_them_or_are_part_of_the_problem(random_sce
         assert with_plain_sides(given) is given
     known = build(small(RANDOM, changes={"boundary.right": {"type": "viscoelastic", "distance": 3.0}}))
     assert with_plain_sides(known) is known
+
+
+def test_larger_disks_that_fill_the_ground_end_at_its_free_surface():
+    """Waves that enter at the bottom come back from there; beyond other sides of the box the ground goes on."""
+    box = {
+        "packing": {"pattern": "A", "size": [6.0, 6.0], "origin": [9.0, 3.0], "radius": 0.25},
+        "ground": {"size": [24.0, 12.0]},
+        "material": ISOTROPIC,
+        "boundary": around("outside", "left", "right", "top") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
+        "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.08}},
+        "monitor": monitors(wall=(9.25, 6.25)),
+        "run": {"duration": 0.02},
+    }
+    case = small(box)
+    larger = coarser(case, build(case), STEP, 1.5).case
+    assert larger.packing.extent == pytest.approx((24.0, 12.0))
+    assert larger.side("top").is_free
+    assert [larger.side(side).is_outside for side in ("left", "right", "bottom")] == [True] * 3
+    assert not [*larger.side("bottom").problems("bottom", {"boundary": larger.boundary, "load": ()})]
