@@ -156,19 +156,22 @@ def _saying_what_is_left(folder: Folder) -> Iterator[None]:
         raise
 
 
-def estimate(results: Path | str, *, repeat: bool = False, threads: int | None = None) -> Budget:
+def estimate(
+    results: Path | str, *, repeat: bool = False, longest: float | None = None, threads: int | None = None
+) -> Budget:
     """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/tasks/trust_a_result.md.
 
     Parameters
     ----------
     results : folder of the results, to which the estimate is added. repeat : whether a run with cracks is repeated with
-    0.98 of its time step. threads : as for `run`.
+    0.98 of its time step. longest : CPU seconds that companions may take; by default 20, or as long as the run.
+    threads : as for `run`.
 
     Raises CaseError for a run with neither monitors nor more than ten cracks, or that is not complete, and a repetition
     of a run without cracks.
     """
     with _threads(threads):
-        return estimate_results(Path(results), repeat)
+        return estimate_results(Path(results), repeat, longest=longest)
 
 
 def advise(

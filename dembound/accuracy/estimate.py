@@ -39,13 +39,16 @@ LEAST_SAMPLES = 8
 """Fewest samples of a history whose error is estimated."""
 
 
-def estimate_results(folder: Path, repeat: bool = False, watch: Watch | None = None) -> Budget:
+def estimate_results(
+    folder: Path, repeat: bool = False, watch: Watch | None = None, longest: float | None = None
+) -> Budget:
     """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
 
     Parameters
     ----------
     folder : of the results. repeat : whether a run with cracks is repeated with a smaller time step, to find how much
-    of them is one draw of many. watch : told of what is done.
+    of them is one draw of many. watch : told of what is done. longest : CPU seconds that companions may take; by
+    default 20, or as long as the run.
 
     Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, or a repetition without
     cracks, and RecordError for a record that cannot be read, or a link in place of a file to write.
@@ -53,14 +56,16 @@ def estimate_results(folder: Path, repeat: bool = False, watch: Watch | None = N
     require_writable(folder / FILE, folder / SUMMARY)
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
-        found, recorded, summary = _estimated(folder, repeat, watch)
+        found, recorded, summary = _estimated(folder, repeat, watch, longest)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, recorded, folder / FILE)
     write_json(folder / SUMMARY, summary | {KEY: found.summary()})
     return found
 
 
-def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget, Motions, dict[str, Any]]:
+def _estimated(
+    folder: Path, repeat: bool, watch: Watch | None, longest: float | None
+) -> tuple[Budget, Motions, dict[str, Any]]:
     """The errors, the records of the monitors, and the summary of the run."""
     record = folder / "run.h5"
     with open_record(record) as file:
@@ -74,30 +79,45 @@ def _estimated(folder: Path, repeat: bool, watch: Watch | None) -> tuple[Budget,
         raise CaseError([f"{record}: {lack}"])
     again = repeated(case, record, cracked) if repeat else None
     said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
-    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, watch)
+    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, watch, longest)
     motions = Named(recorded if causes.motions is None else causes.motions, "monitor")
     return Budget(motions, causes + said, judge_of(case).truth(case), repeat=again), recorded, summary
 
 
-def _causes(case: Case, recorded: Motions, until: float, summary: Mapping[str, Any], watch: Watch | None) -> Causes:
+def _causes(
+    case: Case,
+    recorded: Motions,
+    until: float,
+    summary: Mapping[str, Any],
+    watch: Watch | None,
+    longest: float | None,
+) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
     broken = [] if case.run.duration < until else [f"motion after {until:.4g} s, when the first bond broke"]
     case = replace(case, run=case.run.lasting(min(case.run.duration, until)))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
-    causes = causes_of(case, recorded, summary["time_step"], work, watch)
+    causes = causes_of(case, recorded, summary["time_step"], work, watch, longest)
     causes += judge_of(case).at_start(case, causes.motions or recorded, summary)
     causes += Causes([], broken, list(judge_of(case).notes(case, summary)))
     return causes + Causes([], list(_at_rest(Budget(causes.motions or recorded, causes))))
 
 
-def causes_of(case: Case, recorded: Motions, time_step: float, work: float, watch: Watch | None = None) -> Causes:
+def causes_of(
+    case: Case,
+    recorded: Motions,
+    time_step: float,
+    work: float,
+    watch: Watch | None = None,
+    longest: float | None = None,
+) -> Causes:
     """The causes of the error of a run.
 
     case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step : of
-    the run, s. work : of the run, in the unit of its kind of body; companions may take a tenth of it, or at least
-    `SHORT`. watch : told of what is done.
+    the run, s. work : of the run, in the unit of its kind of body; companions take a tenth of it, or `SHORT`, if
+    possible. watch : told of what is done. longest : CPU seconds that they may take, if that is more than by default.
     """
-    return judge_of(case).causes(case, recorded, time_step, work, max(SHORT, BUDGET * work), watch or Watch())
+    most = max(SHORT, BUDGET * work)
+    return judge_of(case).causes(case, recorded, time_step, work, most, watch or Watch(), longest)
 
 
 def estimate_if_asked(case: Case, folder: Path) -> str:

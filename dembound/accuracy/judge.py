@@ -111,11 +111,21 @@ class Judge(ABC, Generic[C, S]):
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement")
 
     @abstractmethod
-    def causes(self, case: C, recorded: Motions, time_step: float, work: float, most: float, watch: Watch) -> Causes:
+    def causes(
+        self,
+        case: C,
+        recorded: Motions,
+        time_step: float,
+        work: float,
+        most: float,
+        watch: Watch,
+        longest: float | None = None,
+    ) -> Causes:
         """The causes of the error of a run.
 
         case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step
-        (s), work (in the unit of its kind) : of the run. most : work that may be spent. watch : told of what is done.
+        (s), work (in the unit of its kind) : of the run. most : work that is spent, if possible. watch : told of what
+        is done. longest : CPU seconds that companions may take, if that is more than by default.
         """
 
     def truth(self, case: C) -> Truth:

@@ -230,11 +230,22 @@ Repeat = Annotated[
     ),
 ]
 
+Spent = Annotated[
+    float | None,
+    typer.Option(
+        "--longest",
+        min=0.0,
+        metavar="SECONDS",
+        help="CPU seconds that companions, runs with larger disks, may take; by default 20, or as long as the run.",
+    ),
+]
+
 
 @app.command("estimate", rich_help_panel=MORE)
 def estimate(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     repeat: Repeat = False,
+    longest: Spent = None,
     threads: Threads = None,
 ) -> None:
     """Estimate the errors of runs by sides, grid and time step.
@@ -253,7 +264,7 @@ def estimate(
         try:
             folder = with_name(results_file(path)).parent
             with watched(folder.name) as watching:
-                found = estimate_results(folder, repeat, watching)
+                found = estimate_results(folder, repeat, watching, longest)
             _show(folder, found)
         except CaseError as error:
             problems += [line for line in str(error).splitlines() if line not in problems]

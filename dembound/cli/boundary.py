@@ -112,11 +112,12 @@ def boundary(
     count, asked = len(hertz) or FREQUENCIES, (len(given) or len(ANGLES)) if not types else len(given or COMPARED)
     each = seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
     if not quick and each * count > longest:
-        fewer, all_of = int(longest / each), f"{count} frequencies take about {each * count:.0f} s of CPU time"
+        needed = math.ceil(each * count)  # rounded up, so that the option as said allows it
+        fewer, all_of = int(longest / each), f"{count} frequencies take about {needed} s of CPU time"
         if hertz or types or fewer < 1:
-            fit = f"at most {longest:g} s are allowed; --longest {each * count:.0f} allows it"
+            fit = f"at most {longest:g} s are allowed; --longest {needed} allows it"
             raise CaseError([f"boundary: {all_of}, {fit}, --quick takes less, --side measures one side"])
-        err.print(f"{loaded.name}: {all_of}, so {fewer} are measured; --longest {each * count:.0f} measures all")
+        err.print(f"{loaded.name}: {all_of}, so {fewer} are measured; --longest {needed} measures all")
         count = fewer
     for side, layer in parts:
         report = _report(side if layer is None else f"{side}, in {layer}")

@@ -69,3 +69,8 @@ def times_of_scene(scene: DiskScene) -> dict[str, float]:
     disks = {"free-field column": each * column, "disks": each * (scene.disk_count - column)}
     wave = 0.0 if scene.ground_waves is None else DRIVE * len(scene.supports.drive_row)
     return times_of_continuum(nodes, absorbing, ties) | disks | {"incident wave": wave}
+
+
+def seconds_of(scene: DiskScene, steps: float) -> float:
+    """CPU seconds of so many steps of a scene."""
+    return 1e-9 * steps * sum(times_of_scene(scene).values())

@@ -109,7 +109,14 @@ class BarJudge(Judge[BarCase, BarScene]):
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 
     def causes(
-        self, case: BarCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch
+        self,
+        case: BarCase,
+        recorded: Motions,
+        time_step: float,
+        work: float,
+        most: float,
+        watch: Watch,
+        longest: float | None = None,
     ) -> Causes:
         """Errors of ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
+from dembound.accuracy.of_disks.affordable import require_short
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.measured import (
@@ -22,6 +23,7 @@ from dembound.accuracy.proposal import Watch
 from dembound.accuracy.runner import Runner
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.step_cost import seconds_of
 from dembound.errors import DemboundError
 from dembound.formulas.cause import MOTIONS, SIDES, STEP, USUAL, Cause, Causes
 from dembound.formulas.disks.continuum import causes_of_continuum
@@ -90,6 +92,9 @@ HELD_FACTOR = 1.6
 five scenes with a force, fixed sides and rollers (for a fixed side with 0.64 D in place of D/2 for P and 0.77 D
 for S waves)."""
 
+BY_HALF = "by runs with half the step, as contacts open or slide"
+"""How errors of the time step are found under laws with a history."""
+
 CONTACTS_FACTOR = 1.8
 """Factor of time-step errors where contacts open or slide, in gravel under weight on a shaken base: true errors of
 30 velocities were 0.78 to 2.0 times as large as found by the given disks, one above 1.8, and 0.13 to 2.05 times
@@ -97,16 +102,29 @@ as large as found by larger disks, two above 1.8 (lattices and random packings, 
 
 
 def causes_of_run(
-    case: DiskCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch | None = None
+    case: DiskCase,
+    recorded: Motions,
+    time_step: float,
+    work: float,
+    most: float,
+    watch: Watch | None = None,
+    longest: float | None = None,
 ) -> Causes:
     """The causes of the error of a run, from the far companion's motion if there is one, else from the recorded motion.
 
     case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
-    particle-steps that companions may take. watch : told of what is done.
+    particle-steps that companions take, if possible. watch : told of what is done. longest : CPU seconds that they may
+    take, if that is more than by default, see `require_short`.
     """
     scene, watch = build(case), watch or Watch()
     companions = Companions(case, scene, time_step, most, Runner(shown=watch.run), Reflections(watch.begins))
     formulas = Formulas(scene, time_step, companions.reflections)
+
+    @cache
+    def require() -> None:
+        own = seconds_of(scene, case.run.duration / time_step)
+        require_short(companions, own, longest, watch, command="dembound estimate ")
+
     moved = " and ".join(sides_of_pair(case)) if case.monitor else ""
     reason = ""
     if moved and (case.ground.size is not None or case.incident is not None):
@@ -114,13 +132,13 @@ def causes_of_run(
     elif moved:
         _tell(watch, formulas.causes(recorded), scene, recorded)
         try:
-            companions.require_affordable()
+            require()
             found = causes_of_choice(companions, scene, time_step, 0.0)
             return found + Causes([], [], entry_notes(scene), companions.runner.work / work)
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
     unknown = [Cause.unknown(SIDES, reason)] if reason else []
-    known, cost = _of_ground_of_run(companions, formulas, recorded, watch)
+    known, cost = _of_ground_of_run(companions, formulas, recorded, watch, require)
     return Causes([*unknown, *known], _not_counted(scene), entry_notes(scene), cost / work)
 
 
@@ -134,12 +152,13 @@ def _tell(watch: Watch, causes: Sequence[Cause], scene: DiskScene, motions: Moti
 
 
 def _of_ground_of_run(
-    companions: Companions, formulas: Formulas, recorded: Motions, watch: Watch
+    companions: Companions, formulas: Formulas, recorded: Motions, watch: Watch, require: Callable[[], None]
 ) -> tuple[list[Cause], float]:
     """All causes but artificial sides, at the recorded times, and the work (particle-steps) of their companions.
 
     Companions are needed for monitors and loads that are not at their places, for sides that hold disks, and for
-    contacts that open or slide. The causes are those of `ground_causes` but for kinks, which records have.
+    contacts that open or slide. The causes are those of `ground_causes` but for kinks, which records have. require :
+    raises CaseError where companions take too long.
     """
     case, scene, time_step = companions.case, companions.scene, companions.time_step
     known = formulas.causes(recorded)
@@ -147,7 +166,7 @@ def _of_ground_of_run(
     if not case.monitor:
         return known, 0.0
     at = {name: own.time for name, own in recorded.items()}
-    places = _places(companions, scene, at)
+    places = _places(companions, scene, at, require)
     if not (sides or scene.has_history):
         return [*known, places], float(companions.runner.work)
     reason = ""
@@ -156,10 +175,12 @@ def _of_ground_of_run(
     else:
         _tell(watch, known, scene, recorded)
         try:
-            companions.require_affordable()
+            require()
             time = next(iter(companions.far.values())).time
         except DemboundError as error:
             reason = "; ".join(str(error).splitlines())
+            if scene.has_history:
+                known = _with_steps(known, Cause.unknown(STEP, f"{BY_HALF}: {reason}"))
     if reason:
         unknown = [Cause.unknown(f"{side} side", HELD.format(reason), True) for side in sides]
         return [*known, places, *unknown], float(companions.runner.work)
@@ -171,7 +192,9 @@ def _of_ground_of_run(
     return [*causes, places], float(companions.runner.work)
 
 
-def _places(companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarray]) -> Cause:
+def _places(
+    companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarray], require: Callable[[], None]
+) -> Cause:
     """Errors by monitors and loads at other places than those given, at the times (k,) s of each monitor.
 
     No companion is run where all are at their places.
@@ -179,7 +202,7 @@ def _places(companions: Companions, scene: DiskScene, at: Mapping[str, np.ndarra
     if not is_moved(scene):
         return Cause(PLACES, AT_PLACES, {name: dict.fromkeys(MOTIONS, 0.0) for name in at}, of_disks=True)
     try:
-        companions.require_affordable()
+        require()
         found, time = errors_of_places(companions, scene), next(iter(companions.far.values())).time
     except DemboundError as error:
         return Cause.unknown(PLACES, "; ".join(str(error).splitlines()), of_disks=True)
@@ -271,16 +294,20 @@ def _with_steps_of_contacts(
     """
     if not scene.has_history:
         return causes
-    words = "by runs with half the step, as contacts open or slide"
     try:
         parts = errors_of_steps(companions, scene, time_step)
     except DemboundError as error:
-        found = Cause.unknown(STEP, f"{words}: {'; '.join(str(error).splitlines())}")
+        found = Cause.unknown(STEP, f"{BY_HALF}: {'; '.join(str(error).splitlines())}")
     else:
         if not parts:
             return causes
-        found = Cause(STEP, words, parts, "companion", factor=CONTACTS_FACTOR, is_sample=True)
-    return [found if cause.name == STEP else cause for cause in causes]
+        found = Cause(STEP, BY_HALF, parts, "companion", factor=CONTACTS_FACTOR, is_sample=True)
+    return _with_steps(causes, found)
+
+
+def _with_steps(causes: Sequence[Cause], steps: Cause) -> list[Cause]:
+    """The causes, with another one of the time step."""
+    return [steps if cause.name == STEP else cause for cause in causes]
 
 
 def _held(companions: Companions, scene: DiskScene) -> Iterator[Cause]:

@@ -102,7 +102,9 @@ def coarser(
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
     )
-    larger = replace(larger, boundary={side: _as_deep(case, side, scene, cell) for side in case.boundary})
+    is_below = "top" in case.packing.gaps(case.box)  # larger disks fill the ground, up to its free surface
+    remaining = [side for side in case.boundary if not (is_below and side == "top")]
+    larger = replace(larger, boundary={side: _as_deep(case, side, scene, cell) for side in remaining})
     boundary, weight = equal_sides(larger, scene, time_step, reflections or Reflections())
     return Coarser(replace(larger, boundary=boundary), weight)
 

@@ -30,9 +30,6 @@ from dembound.packings import Packing
 QUANTITIES = ("velocity", "displacement")
 """Quantities whose errors are bounded."""
 
-LEEWAY = 1.5
-"""Work of the cheapest pair over what may be spent, from which on an estimate runs none."""
-
 LESS = 0.9
 """Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
 
@@ -75,25 +72,15 @@ class Companions:
             return LESS * self.pair.step
         return LESS * choose_step(self.lattice)[0]
 
-    def require_affordable(self) -> None:
-        """Raise CaseError if even the cheapest pair takes much more than may be spent."""
-        if self.pair is not None and (times := self.pair.work / self.most) > LEEWAY:
-            raise CaseError([f"companions would take {times:.2g} times the work that may be spent on them"])
-
     @property
     def size(self) -> str:
         """The sizes of the first companions, in words."""
-        each = dict.fromkeys(f"{scene.disk_count:,} disks × {steps:,} steps" for scene, steps in self._sizes)
+        each = dict.fromkeys(f"{scene.disk_count:,} disks × {steps:,} steps" for scene, steps in self.first)
         return " and ".join(each)
 
-    @property
-    def work(self) -> float:
-        """Particle-steps of the first companions."""
-        return float(sum(scene.disk_count * steps for scene, steps in self._sizes))
-
-    @property
-    def _sizes(self) -> list[tuple[DiskScene, int]]:
-        """Scenes of the first companions, and their steps."""
+    @cached_property
+    def first(self) -> list[tuple[DiskScene, int]]:
+        """Scenes of the first companions, that with the sides of the case before others, and their steps."""
         scenes = [self.lattice] if self.pair is None else self.pair.scenes
         return [(scene, math.ceil(self.case.run.duration / self.step)) for scene in scenes]
 

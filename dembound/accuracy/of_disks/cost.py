@@ -213,7 +213,7 @@ def planned_cost(planned: Plan[DiskScene]) -> Cost:
     column = 0 if stepped.seam is None else stepped.seam.count
     nodes = sum(beyond.count for beyond in stepped.continua)
     ties = sum(len(beyond.wall.element) for beyond in stepped.continua)
-    seconds = 1e-9 * planned.steps * sum(step_cost.times_of_scene(stepped).values())
+    seconds = step_cost.seconds_of(stepped, planned.steps)
     return Cost(planned.time_step, planned.steps, stepped.disk_count, column, nodes, ties, seconds)
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import OWN, Choice, Named
 from dembound.accuracy.judge import Extended, Judge
-from dembound.accuracy.of_disks.candidates import CUT, LONGEST, PART, PER_STEP, Candidates, disk_choices
+from dembound.accuracy.of_disks.affordable import require_short
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, PART, Candidates, disk_choices
 from dembound.accuracy.of_disks.causes import (
     Formulas,
     causes_of_choice,
@@ -86,19 +87,6 @@ def _require_known(case: DiskCase) -> None:
         raise CaseError(problems, case.name)
 
 
-def _require_short(companions: Companions, own: float, longest: float | None, watch: Watch) -> None:
-    """Say what companions are run; CaseError if they take longer than the case, a given limit, and `MOST`.
-
-    own, longest : CPU seconds of the case, and of the option.
-    """
-    most, needed = max(MOST, own, longest or 0.0), PER_STEP * companions.work
-    if needed > most:
-        longer = f"more than {with_unit(most, 's', 2)}: --longest {needed:.2g} allows it"
-        raise CaseError([f"companions of {companions.size} take about {with_unit(needed, 's', 2)}, {longer}"])
-    search = with_unit(max(LONGEST, PART * max(own, longest or 0.0)), "s", 2)
-    watch.says(f"runs companions of {companions.size} and others of these sizes, and searches for at most {search}")
-
-
 def _is_reached(planned: Plan[DiskScene]) -> bool:
     """Whether the fastest waves reach any monitor within the run."""
     scene, duration = planned.scene, planned.scene.case.run.duration
@@ -108,9 +96,6 @@ def _is_reached(planned: Plan[DiskScene]) -> bool:
         for source in planned.kind.sources(scene)
     )
 
-
-MOST = 20.0
-"""CPU seconds that the first companions of advice may take, as counted, if that is more than the case takes."""
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -124,11 +109,18 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     first_break = BREAK_TIME
 
     def causes(
-        self, case: DiskCase, recorded: Motions, time_step: float, work: float, most: float, watch: Watch
+        self,
+        case: DiskCase,
+        recorded: Motions,
+        time_step: float,
+        work: float,
+        most: float,
+        watch: Watch,
+        longest: float | None = None,
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         require_linear(case.material.law)
-        return causes_of_run(case, recorded, time_step, work, most, watch)
+        return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
     def truth(self, case: DiskCase) -> Truth:
         """The default truth: "disks" where the packing is random or bonds may break, else "rock"."""
@@ -179,15 +171,17 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
         runner, reflections = Runner(shown=watch.run), Reflections(watch.begins)
         companions = Companions(case, planned.scene, planned.time_step, most, runner, reflections)
+        own_cost = planned_cost(planned).seconds
         try:
-            _require_short(companions, planned_cost(planned).seconds, longest, watch)
+            search = with_unit(max(LONGEST, PART * max(own_cost, longest or 0.0)), "s", 2)
+            require_short(companions, own_cost, longest, watch, f", and searches for at most {search}")
             moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
         except CaseError as error:
             what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
             raise CaseError([f"{what}: {problem}" for problem in error.problems], case.name) from error
         if not _is_reached(planned) or not any(map(np.any, moved)):
             raise CaseError(["advise: nothing moves at the monitors"], case.name)
-        given = _given(companions, of, planned_cost(planned).seconds, watch)
+        given = _given(companions, of, own_cost, watch)
         shown = given
         if seeds > 1:
             shown = given.with_causes(cause_of_packing(case, given.budget.motions, seeds, watch.run))

@@ -112,6 +112,13 @@ def _shifts_of_loads(scene: DiskScene) -> list[np.ndarray]:
     return [each.middle - each.asked for each in places_of_loads(scene)] or [np.zeros(2)]
 
 
+def sides_with_rows(companions: Companions, scene: DiskScene) -> list[str]:
+    """The sides at which errors of places need a companion with one more row: loads are shifted along their normals."""
+    least = LEAST_SHIFT * companions.lattice.ground.brick.mean_diameter
+    shifts = np.abs(_shifts_of_loads(scene)).max(axis=0)
+    return [side for side in SIDES if _stays(companions.case, side) and shifts[normal_axis(side)] >= least]
+
+
 def _stays(case: DiskCase, side: str) -> bool:
     """Whether a side reflects and cannot move: a surface or the end of a block."""
     table = case.side(side)
@@ -136,7 +143,7 @@ def errors_of_steps(
     case is run with both steps if that is affordable, else its companion, whose error scales with the step over its
     limit, which is proportional to the diameter. Empty where the law remains elastic.
     """
-    is_own, (case, step), run = _runs_own(companions), _with_contacts(companions), _sliding(companions)
+    is_own, (case, step), run = runs_own(companions), _with_contacts(companions), _sliding(companions)
     if not any(LAWS[name].has_history for name in run.laws):
         return {}
     shorter = companions.runner.run(at_step(case, 0.5 * step), companions.named("with half the step"))
@@ -164,21 +171,21 @@ def settled_of(companions: Companions) -> Mapping[str, Any] | None:
     if companions.case.static is None or not companions.scene.has_history:
         return None
     found = _sliding(companions).settled
-    if _runs_own(companions) or found is None:
+    if runs_own(companions) or found is None:
         return found
     force = found["mean_residual"] * companions.scene.ground.brick.mean_diameter / companions.diameter
     rests_elastically = found["elastic"] and is_square_lattice(companions.scene.ground)
     return {**found, "mean_residual": force, "elastic": rests_elastically}
 
 
-def _runs_own(companions: Companions) -> bool:
+def runs_own(companions: Companions) -> bool:
     """Whether the given case itself is run where contacts may open or slide, as that is affordable."""
     return OFTEN * companions.scene.count * companions.case.run.duration / companions.time_step <= companions.most
 
 
 def _with_contacts(companions: Companions) -> tuple[DiskCase, float]:
     """The case or companion that is run where contacts may open or slide, and its step, s."""
-    return (companions.case, companions.time_step) if _runs_own(companions) else (companions.own, companions.step)
+    return (companions.case, companions.time_step) if runs_own(companions) else (companions.own, companions.step)
 
 
 def _sliding(companions: Companions) -> Run:
