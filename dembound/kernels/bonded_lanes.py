@@ -9,7 +9,8 @@ from numba import njit
 
 from dembound.kernels import bonded as law
 from dembound.kernels.common import FAST, INLINED, U
-from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, splat
+from dembound.kernels.compiler.lane_access import load
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.lane_step import (

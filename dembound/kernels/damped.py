@@ -8,7 +8,8 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import CHUNKS, FAST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, load, splat, store, where_equal
+from dembound.kernels.compiler.lane_access import load, store, where_equal
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.drag import (
     changed_power,

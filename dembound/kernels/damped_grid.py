@@ -8,7 +8,8 @@ the strain energy of those that do not absorb is subtracted when the ledger is w
 from numba import get_thread_id, njit
 
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.compiler.lanes import LANES, load, splat, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import LANES, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.damped import FADED
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, shape_of

@@ -7,7 +7,8 @@ of m/s, so that they get the force −αm v⁻ here. Without drag all functions 
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import load, splat
+from dembound.kernels.compiler.lane_access import load
+from dembound.kernels.compiler.lanes import splat
 from dembound.kernels.law import answer, generic
 from dembound.kernels.tables import Drag, NoDrag
 

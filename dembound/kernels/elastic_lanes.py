@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, magnitude, splat, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, magnitude, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.elastic import fill_forces, move_rows
 from dembound.kernels.held_lanes import move_pair, moving_pair

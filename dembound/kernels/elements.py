@@ -14,7 +14,8 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, combine, combine_more, larger, load, store
+from dembound.kernels.compiler.lane_access import combine, combine_more, load, store
+from dembound.kernels.compiler.lanes import LANES, larger
 from dembound.kernels.tables import ALONG, Shape
 
 WITHIN: dict[str, Any] = FAST | {"forceinline": True}

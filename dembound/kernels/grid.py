@@ -12,7 +12,8 @@ from numba import get_thread_id, njit
 
 from dembound.kernels import lane_step
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, load, splat, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, lane, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
 from dembound.kernels.law import is_law

@@ -11,7 +11,8 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, load, splat, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.lane_step import INLINED, blocks_of, kick, next_place, place_of, stray_forces
 

@@ -3,7 +3,8 @@
 from numba import njit
 
 from dembound.kernels.common import CHUNKS, FAST, INLINED, REST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, store, with_sign
+from dembound.kernels.compiler.lane_access import store
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, with_sign
 from dembound.kernels.elastic import row_force
 
 

@@ -304,45 +304,15 @@ def search(positions, reach, usual, most, periods, low, high, width, shape, star
                 continue
             column, row = cell(x, low[0], width), cell(y, low[1], width)
             count, own_image = 0, image > 4
+            height, lift = (3, 0) if around == 1 else (1, 1)  # three rows are one range of entries
             for side in range(-around, min(around, columns - around - 1) + 1):
-                first = (column + side & (columns - 1)) * (rows + 2)
-                if around == 1:
-                    at = first + (row & (rows - 1))
+                first = (column + side & (columns - 1)) * (rows + 2) + lift
+                for above in range(-around, min(around, rows - around - 1) + 1, height):
+                    at = first + (row + above + 1 - lift & (rows - 1))
                     count = pick(
-                        start[at],
-                        start[at + 3],
-                        i,
-                        own_image,
-                        after,
-                        x,
-                        y,
-                        own,
-                        across,
-                        up,
-                        reaching,
-                        number,
-                        picked,
-                        count,
-                    )
-                    continue
-                for above in range(-around, min(around, rows - around - 1) + 1):
-                    at = first + 1 + (row + above & (rows - 1))
-                    count = pick(
-                        start[at],
-                        start[at + 1],
-                        i,
-                        own_image,
-                        after,
-                        x,
-                        y,
-                        own,
-                        across,
-                        up,
-                        reaching,
-                        number,
-                        picked,
-                        count,
-                    )
+                        start[at], start[at + height], i, own_image, after, x, y, own, across, up, reaching, number,
+                        picked, count,
+                    )  # fmt: skip
             for p in range(count):
                 e = U(picked[U(p)])
                 j = np.int64(number[e])

@@ -14,6 +14,16 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import CHUNKS, FAST, INLINED, MAKES, U, column_sum
+from dembound.kernels.compiler.lane_access import (
+    load,
+    load_of,
+    note_some,
+    nth,
+    store,
+    store_some,
+    store_some_of,
+    where_equal,
+)
 from dembound.kernels.compiler.lanes import (
     LANES,
     at_most,
@@ -21,17 +31,9 @@ from dembound.kernels.compiler.lanes import (
     byte_of,
     choose,
     larger,
-    load,
-    load_of,
     magnitude,
-    note_some,
-    nth,
     root,
     splat,
-    store,
-    store_some,
-    store_some_of,
-    where_equal,
     with_sign,
 )
 from dembound.kernels.compiler.limits import factors_of

@@ -4,7 +4,8 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, INLINED, MAKES, U, column_sum
-from dembound.kernels.compiler.lanes import LANES, load
+from dembound.kernels.compiler.lane_access import load
+from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import INTACT, OPEN, push_each

@@ -19,7 +19,8 @@ from typing import Any
 from numba import njit, types
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import LANES, load, splat, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import LANES, splat
 from dembound.kernels.compiler.separate import apart
 from dembound.kernels.law import is_tie
 from dembound.kernels.tables import Repeats, WallTies

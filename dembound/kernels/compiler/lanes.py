@@ -1,11 +1,8 @@
 """Lanes: eight numbers that are loaded, computed and stored at once, those of eight copies of a particle.
 
-A kernel with `x = load(u, i)` and `f = k * (load(u, j) - x)` computes for slots i … i + 7 the same as with `u[i]` and
-`u[j]` for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2 or four of NEON and
-SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
-
-Slots that are not one after the other are given by eight indices, `i = load(first, c)` of an array of uint32, in place
-of the first slot: all functions below, and a row of constants (`constants[k, column]`), take either.
+A kernel with `x = load(u, i)` and `f = k * (load(u, j) - x)`, see lane_access.py, computes for slots i … i + 7 the same
+as with `u[i]` and `u[j]` for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2 or
+four of NEON and SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
 
 Without compiling (NUMBA_DISABLE_JIT=1) the functions below run as Python, on arrays of eight.
 """
@@ -28,11 +25,9 @@ from dembound.pairwise import at_most, choose, larger, magnitude, root, with_sig
 LANES = 8
 """Slots computed at once."""
 
-_DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
-_BITS, _BYTES = ir.VectorType(ir.IntType(1), LANES), ir.VectorType(ir.IntType(8), LANES)
-_INDEX = ir.IntType(64)
-_INDICES = ir.VectorType(_INDEX, LANES)
-_FLAGS = tuple(sorted(FASTMATH))
+DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
+BITS, INDICES = ir.VectorType(ir.IntType(1), LANES), ir.VectorType(ir.IntType(64), LANES)
+FLAGS = tuple(sorted(FASTMATH))
 
 
 class _LanesType(types.Type):
@@ -53,58 +48,19 @@ lanes, mask, indices = _LanesType("lanes"), _MaskType("lanes mask"), _IndicesTyp
 @register_model(_LanesType)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _DOUBLES)
+        super().__init__(manager, kind, DOUBLES)
 
 
 @register_model(_MaskType)
 class _MaskModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _BITS)
+        super().__init__(manager, kind, BITS)
 
 
 @register_model(_IndicesType)
 class _IndicesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _INDICES)
-
-
-At = Any
-"""The first of eight indices one after the other, or eight indices (8,)."""
-
-
-def _all_of(at: At) -> np.ndarray:
-    """The eight indices."""
-    return at if isinstance(at, np.ndarray) else int(at) + np.arange(LANES)
-
-
-def load(array: np.ndarray, at: At) -> np.ndarray:
-    """Eight doubles of a contiguous array (n,), or indices from one of uint32."""
-    return array[_all_of(at)]
-
-
-def load_of(table: np.ndarray, row: int, at: At) -> np.ndarray:
-    """Eight doubles of a row of a contiguous array (m, n)."""
-    return load(table[int(row)], at)
-
-
-def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
-    """Write eight doubles to a contiguous array (n,)."""
-    array[_all_of(at)] = values
-
-
-def store_some(array: np.ndarray, at: At, values: np.ndarray, chosen: int) -> None:
-    """Write those of eight doubles whose bit is set in the byte `chosen` to a contiguous array (n,)."""
-    array[_all_of(at)[bits(chosen)]] = np.broadcast_to(values, LANES)[bits(chosen)]
-
-
-def store_some_of(table: np.ndarray, row: int, at: At, values: np.ndarray, chosen: int) -> None:
-    """Write those of eight doubles whose bit is set in the byte `chosen` to a row of a contiguous array (m, n)."""
-    store_some(table[int(row)], at, values, chosen)
-
-
-def nth(at: At, k: int) -> int:
-    """The index in lane k."""
-    return int(_all_of(at)[int(k)])
+        super().__init__(manager, kind, INDICES)
 
 
 def splat(number: float) -> np.ndarray:
@@ -122,42 +78,12 @@ def byte_of(chosen: np.ndarray) -> np.uint8:
     return np.packbits(chosen, bitorder="little")[0]
 
 
-def where_equal(array: np.ndarray, at: At, value: int) -> np.ndarray:
-    """Mask of eight bytes of a contiguous array (n,) that equal a value."""
-    return array[_all_of(at)] == value
-
-
-def note_some(array: np.ndarray, at: At, ones: int, twos: int, chosen: int) -> None:
-    """Write those of eight bytes whose bit is set in `chosen` to an array (n,): 1 or 2 as in these bytes, else 0."""
-    array[_all_of(at)[bits(chosen)]] = (bits(ones) + 2 * bits(twos).astype(np.uint8))[bits(chosen)]
-
-
 def lane(values: np.ndarray, k: int) -> float:
     """The number in lane k."""
     return float(values[int(k)])
 
 
-def combine(
-    points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
-) -> None:
-    """Multiply N groups of eight doubles by a matrix (N·N,), row by row.
-
-    points : N numbers, only used for their count N, which is known when a kernel is compiled. given, found
-    : contiguous arrays (n,), in which the groups begin at i, i + stride, … and j, j + stride, …; both may be the same.
-    """
-    groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
-    found[int(j) + groups] = matrix.reshape(len(points), -1) @ given[int(i) + groups]
-
-
-def combine_more(
-    points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
-) -> None:
-    """Combine lanes and add the result to `found`."""
-    groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
-    found[int(j) + groups] += matrix.reshape(len(points), -1) @ given[int(i) + groups]
-
-
-def _widened(builder: Any, number: Any) -> Any:
+def widened(builder: Any, number: Any) -> Any:
     """A number in all lanes."""
     kind = ir.VectorType(number.type, LANES)
     one = builder.insert_element(ir.Constant(kind, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
@@ -165,7 +91,7 @@ def _widened(builder: Any, number: Any) -> Any:
     return builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), everywhere)
 
 
-def _compiled(
+def compiled_as(
     function: Any, result: Any, *arguments: Any, number: Callable[..., Any] | None = None
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Replace a function in compiled kernels by code that a function of (builder, values…) generates.
@@ -193,7 +119,7 @@ def _compiled(
                     array = context.make_array(given)(context, builder, value)
                     values.append(array.data if given.ndim == 1 else (array.data, array.shape))
                 else:
-                    values.append(_widened(builder, value) if wanted == lanes and given != lanes else value)
+                    values.append(widened(builder, value) if wanted == lanes and given != lanes else value)
             found = generate(builder, *values)
             return context.get_dummy_value() if result == types.void else found
 
@@ -248,7 +174,7 @@ def _are_numbers(kinds: Any) -> bool:
 
 def _instruction(function: Any, name: str) -> None:
     """Replace an operator by an LLVM instruction for two lanes."""
-    _compiled(function, lanes, lanes, lanes)(lambda builder, a, b: getattr(builder, name)(a, b, flags=_FLAGS))
+    compiled_as(function, lanes, lanes, lanes)(lambda builder, a, b: getattr(builder, name)(a, b, flags=FLAGS))
 
 
 def _intrinsic(function: Any, name: str, count: int) -> None:
@@ -263,13 +189,8 @@ def _intrinsic(function: Any, name: str, count: int) -> None:
         return call
 
     number = caller(ir.DoubleType(), "f64")
-    _compiled(function, lanes, *[lanes] * count, number=number)(caller(_DOUBLES, f"v{LANES}f64"))
+    compiled_as(function, lanes, *[lanes] * count, number=number)(caller(DOUBLES, f"v{LANES}f64"))
 
-
-_numbers = types.UniTuple(types.float64, 1)  # of any length
-_table = types.Array(types.float64, 2, "C")
-_array, _bytes = types.Array(types.float64, 1, "C"), types.Array(types.uint8, 1, "C")
-_numbers_of_slots = types.Array(types.uint32, 1, "C")
 
 for _operator, _in_place, _name in (
     (operator.add, operator.iadd, "fadd"),
@@ -285,195 +206,27 @@ _intrinsic(root, "sqrt", 1)
 _intrinsic(with_sign, "copysign", 2)
 
 
-def _place(builder: Any, first: Any, i: Any, kind: Any) -> Any:
-    """Address of the eight values of a kind from index i on."""
-    return builder.bitcast(builder.gep(first, [i]), kind.as_pointer())
-
-
-def _places(builder: Any, first: Any, at: Any) -> Any:
-    """Addresses of values at eight indices."""
-    size = ir.Constant(_INDICES, [_SIZES[str(first.type.pointee)]] * LANES)
-    begin = _widened(builder, builder.ptrtoint(first, _INDEX))
-    return builder.inttoptr(builder.add(begin, builder.mul(at, size)), ir.VectorType(first.type, LANES))
-
-
-_SIZES = {"double": 8, "i32": 4, "i8": 1}
-
-
-def _call(builder: Any, name: str, returned: Any, *values: Any) -> Any:
-    """Call of an LLVM intrinsic for vectors."""
-    signed = ir.FunctionType(returned, [value.type for value in values])
-    return builder.call(cgutils.get_or_insert_function(builder.module, signed, f"llvm.masked.{name}"), values)
-
-
-_ALIGN, _EVERYWHERE = ir.Constant(ir.IntType(32), 1), ir.Constant(_BITS, [1] * LANES)
-
-
-def gathered(builder: Any, first: Any, at: Any) -> Any:
-    """Values at eight indices of an array, for code of compiled functions."""
-    value = first.type.pointee
-    name = {"double": "f64", "i32": "i32", "i8": "i8"}[str(value)]
-    kind = ir.VectorType(value, LANES)
-    places, others = _places(builder, first, at), ir.Constant(kind, ir.Undefined)
-    return _call(builder, f"gather.v{LANES}{name}.v{LANES}p0", kind, places, _ALIGN, _EVERYWHERE, others)
-
-
-@_compiled(load, lanes, _array, types.uint64)
-def _load(builder: Any, first: Any, i: Any) -> Any:
-    return builder.load(_place(builder, first, i, _DOUBLES), align=8)
-
-
-_compiled(load, lanes, _array, indices)(gathered)
-
-
-@_compiled(load, indices, _numbers_of_slots, types.uint64)
-def _load_indices(builder: Any, first: Any, i: Any) -> Any:
-    kind = ir.VectorType(ir.IntType(32), LANES)
-    return builder.zext(builder.load(_place(builder, first, i, kind), align=4), _INDICES)
-
-
-@_compiled(load, indices, _numbers_of_slots, indices)
-def _load_indices_at(builder: Any, first: Any, at: Any) -> Any:
-    return builder.zext(gathered(builder, first, at), _INDICES)
-
-
-@_compiled(store, types.void, _array, types.uint64, lanes)
-def _store(builder: Any, first: Any, i: Any, values: Any) -> None:
-    builder.store(values, _place(builder, first, i, _DOUBLES), align=8)
-
-
-@_compiled(store_some, types.void, _array, types.uint64, lanes, types.uint8)
-def _store_some(builder: Any, first: Any, i: Any, values: Any, chosen: Any) -> None:
-    place, bits = _place(builder, first, i, _DOUBLES), builder.bitcast(chosen, _BITS)
-    _call(builder, f"store.v{LANES}f64.p0", ir.VoidType(), values, place, _ALIGN, bits)
-
-
-def _scatter(builder: Any, values: Any, first: Any, at: Any, chosen: Any) -> None:
-    """Write those of eight values that are chosen."""
-    name = {"double": "f64", "i8": "i8"}[str(first.type.pointee)]
-    places = _places(builder, first, at)
-    _call(builder, f"scatter.v{LANES}{name}.v{LANES}p0", ir.VoidType(), values, places, _ALIGN, chosen)
-
-
-@_compiled(store, types.void, _array, indices, lanes)
-def _store_at(builder: Any, first: Any, at: Any, values: Any) -> None:
-    _scatter(builder, values, first, at, _EVERYWHERE)
-
-
-@_compiled(store_some, types.void, _array, indices, lanes, types.uint8)
-def _store_some_at(builder: Any, first: Any, at: Any, values: Any, chosen: Any) -> None:
-    _scatter(builder, values, first, at, builder.bitcast(chosen, _BITS))
-
-
-def _row_of(builder: Any, table: Any, row: Any) -> Any:
-    """Address of a row of an array (m, n)."""
-    first, shape = table
-    return builder.gep(first, [builder.mul(row, builder.extract_value(shape, 1))])
-
-
-for _kind, _loaded, _stored in (
-    (types.uint64, _load, _store_some),
-    (indices, gathered, _store_some_at),
-):
-    _compiled(load_of, lanes, _table, types.uint64, _kind)(
-        lambda builder, table, row, at, of=_loaded: of(builder, _row_of(builder, table, row), at)
-    )
-    _compiled(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
-        lambda builder, table, row, *more, of=_stored: of(builder, _row_of(builder, table, row), *more)
-    )
-
-
-@_compiled(nth, types.uint64, types.uint64, types.uint64)
-def _nth(builder: Any, at: Any, k: Any) -> Any:
-    return builder.add(at, k)
-
-
-@_compiled(nth, types.uint64, indices, types.uint64)
-def _nth_at(builder: Any, at: Any, k: Any) -> Any:
-    return builder.extract_element(at, k)
-
-
-@infer_global(operator.getitem)
-class _RowsTyping(AbstractTemplate):
-    """Constants of eight pairs: a column of an array (p, c) in eight rows."""
-
-    def generic(self, args: Any, kws: Any) -> Any:
-        table, at = args
-        if isinstance(table, types.Array) and table.ndim == 2 and at == _ROWS:
-            return signature(lanes, table, at)
-        return None
-
-
-_ROWS = types.Tuple((indices, types.uint64))
-
-
-@lower_builtin(operator.getitem, types.Array, _ROWS)
-def _rows(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-    table = context.make_array(sig.args[0])(context, builder, args[0])
-    rows, column = cgutils.unpack_tuple(builder, args[1])
-    return gathered_rows(builder, table.data, rows, column, table.shape)
-
-
-def gathered_rows(builder: Any, first: Any, rows: Any, column: Any, shape: Any) -> Any:
-    """Values of a column in eight rows of a contiguous array of a shape, for code of compiled functions."""
-    width = builder.extract_value(shape, 1)
-    at = builder.add(builder.mul(rows, _widened(builder, width)), _widened(builder, column))
-    return gathered(builder, first, at)
-
-
-@_compiled(splat, lanes, types.float64)
+@compiled_as(splat, lanes, types.float64)
 def _splat(builder: Any, number: Any) -> Any:
-    return _widened(builder, number)
+    return widened(builder, number)
 
 
-@_compiled(bits, mask, types.uint8)
+@compiled_as(bits, mask, types.uint8)
 def _bits(builder: Any, byte: Any) -> Any:
-    return builder.bitcast(byte, _BITS)
+    return builder.bitcast(byte, BITS)
 
 
-@_compiled(byte_of, types.uint8, mask)
+@compiled_as(byte_of, types.uint8, mask)
 def _byte_of(builder: Any, chosen: Any) -> Any:
     return builder.bitcast(chosen, ir.IntType(LANES))
 
 
-def _equal(builder: Any, values: Any, value: Any) -> Any:
-    return builder.icmp_unsigned("==", values, _widened(builder, value))
-
-
-@_compiled(where_equal, mask, _bytes, types.uint64, types.uint8)
-def _where_equal(builder: Any, first: Any, i: Any, value: Any) -> Any:
-    return _equal(builder, builder.load(_place(builder, first, i, _BYTES), align=1), value)
-
-
-@_compiled(where_equal, mask, _bytes, indices, types.uint8)
-def _where_equal_at(builder: Any, first: Any, at: Any, value: Any) -> Any:
-    return _equal(builder, gathered(builder, first, at), value)
-
-
-def _ones_and_twos(builder: Any, ones: Any, twos: Any) -> Any:
-    """Bytes that are 1, 2 or 0."""
-    one, two = (builder.zext(builder.bitcast(each, _BITS), _BYTES) for each in (ones, twos))
-    return builder.add(one, builder.add(two, two))
-
-
-@_compiled(note_some, types.void, _bytes, types.uint64, types.uint8, types.uint8, types.uint8)
-def _note_some(builder: Any, first: Any, i: Any, ones: Any, twos: Any, chosen: Any) -> None:
-    place = _place(builder, first, i, _BYTES)
-    values, old = _ones_and_twos(builder, ones, twos), builder.load(place, align=1)
-    builder.store(builder.select(builder.bitcast(chosen, _BITS), values, old), place, align=1)
-
-
-@_compiled(note_some, types.void, _bytes, indices, types.uint8, types.uint8, types.uint8)
-def _note_some_at(builder: Any, first: Any, at: Any, ones: Any, twos: Any, chosen: Any) -> None:
-    _scatter(builder, _ones_and_twos(builder, ones, twos), first, at, builder.bitcast(chosen, _BITS))
-
-
-@_compiled(choose, lanes, mask, lanes, lanes, number=lambda builder, *values: builder.select(*values))
+@compiled_as(choose, lanes, mask, lanes, lanes, number=lambda builder, *values: builder.select(*values))
 def _choose(builder: Any, chosen: Any, values: Any, others: Any) -> Any:
     return builder.select(chosen, values, others)
 
 
-@_compiled(at_most, mask, lanes, lanes, number=lambda builder, a, b: builder.fcmp_ordered("<=", a, b))
+@compiled_as(at_most, mask, lanes, lanes, number=lambda builder, a, b: builder.fcmp_ordered("<=", a, b))
 def _at_most(builder: Any, values: Any, limits: Any) -> Any:
     return builder.fcmp_ordered("<=", values, limits)
 
@@ -482,45 +235,11 @@ def _larger_one(builder: Any, value: Any, other: Any) -> Any:
     return builder.select(builder.fcmp_ordered("<=", value, other), other, value)
 
 
-@_compiled(larger, lanes, lanes, lanes, number=_larger_one)
+@compiled_as(larger, lanes, lanes, lanes, number=_larger_one)
 def _larger(builder: Any, values: Any, others: Any) -> Any:
     return _larger_one(builder, values, others)
 
 
-@_compiled(lane, types.float64, lanes, types.uint64)
+@compiled_as(lane, types.float64, lanes, types.uint64)
 def _lane(builder: Any, values: Any, k: Any) -> Any:
     return builder.extract_element(values, k)
-
-
-def _strided(builder: Any, first: Any, stride: Any, count: int) -> list[Any]:
-    """`count` indices from the first one on, a stride apart."""
-    places = [first]
-    for _ in range(count - 1):
-        places.append(builder.add(places[-1], stride))
-    return places
-
-
-def _combination(adds: bool) -> Callable[..., None]:
-    """The code of `combine`, or of `combine_more`: all groups are loaded before any is stored."""
-
-    def generate(builder: Any, points: Any, matrix: Any, given: Any, i: Any, found: Any, j: Any, stride: Any) -> None:
-        count = points.type.count
-        terms = [_load(builder, given, place) for place in _strided(builder, i, stride, count)]
-        places, results = _strided(builder, j, stride, count), []
-        for row, place in enumerate(places):
-            total = _load(builder, found, place) if adds else None
-            for column, term in enumerate(terms):
-                entry = builder.load(builder.gep(matrix, [ir.Constant(ir.IntType(64), row * count + column)]))
-                product = builder.fmul(_widened(builder, entry), term, flags=_FLAGS)
-                total = product if total is None else builder.fadd(total, product, flags=_FLAGS)
-            results.append(total)
-        for place, total in zip(places, results, strict=True):
-            _store(builder, found, place, total)
-
-    return generate
-
-
-for _function, _adds in ((combine, False), (combine_more, True)):
-    _compiled(_function, types.void, _numbers, _array, _array, types.uint64, _array, types.uint64, types.uint64)(
-        _combination(_adds)
-    )

@@ -7,7 +7,8 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
-from dembound.kernels.compiler.lanes import LANES, gathered, indices, lanes, load
+from dembound.kernels.compiler.lane_access import gathered, load
+from dembound.kernels.compiler.lanes import LANES, indices, lanes
 from dembound.pairwise import limit_of
 
 

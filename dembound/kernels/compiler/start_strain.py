@@ -8,7 +8,8 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
-from dembound.kernels.compiler.lanes import gathered_rows, indices, lanes
+from dembound.kernels.compiler.lane_access import gathered_rows
+from dembound.kernels.compiler.lanes import indices, lanes
 from dembound.pairwise import STRAIN
 
 

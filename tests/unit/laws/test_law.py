@@ -10,7 +10,8 @@ from small_cases import small
 
 from dembound.casefile.types import LAWS, _usable
 from dembound.kernels.common import FAST, U
-from dembound.kernels.compiler.lanes import bits, byte_of, load, store
+from dembound.kernels.compiler.lane_access import load, store
+from dembound.kernels.compiler.lanes import bits, byte_of
 from dembound.kernels.contacts import UPDATED, closing_work
 from dembound.kernels.pair_law import (
     bond,

@@ -12,24 +12,26 @@ import pytest
 from numba import njit
 
 from dembound.kernels.common import FAST, U
+from dembound.kernels.compiler.lane_access import (
+    combine,
+    combine_more,
+    load,
+    note_some,
+    nth,
+    store,
+    store_some,
+    where_equal,
+)
 from dembound.kernels.compiler.lanes import (
     LANES,
     at_most,
     bits,
     byte_of,
     choose,
-    combine,
-    combine_more,
     lane,
-    load,
     magnitude,
-    note_some,
-    nth,
     root,
     splat,
-    store,
-    store_some,
-    where_equal,
     with_sign,
 )
 from dembound.kernels.compiler.limits import factors_of
