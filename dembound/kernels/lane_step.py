@@ -6,6 +6,9 @@ from dembound.kernels.common import CHUNKS, FAST, INLINED, REST, U
 from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, store, with_sign
 from dembound.kernels.elastic import row_force
 
+RUN = 16
+"""Blocks of which chunks have whole multiples, as to begin one takes as long as some blocks."""
+
 
 @njit(**INLINED)
 def kick(v, f, b):
@@ -50,10 +53,11 @@ def stray_forces(rows, first, last, u):
 
 @njit(**INLINED)
 def blocks_of(rows, chunk):
-    """First block of a chunk, and the one after its last."""
+    """First block of a chunk, and the one after its last; in small bodies many chunks are empty."""
     begin = rows.group_block[0]
     n = rows.group_block[rows.group_block.size - 1] - begin
-    return begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
+    first, last = chunk * n // CHUNKS // RUN * RUN, (chunk + 1) * n // CHUNKS // RUN * RUN
+    return begin + first, begin + (n if chunk + 1 == CHUNKS else last)
 
 
 @njit(**INLINED)

@@ -8,6 +8,7 @@ from dembound.damping import Attenuation, factors_of
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.layout import Rows, elastic_constants
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.stepping.steps_ahead import steps_ahead
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.damped import remember_crossing
 from dembound.kernels.tables.contacts import LaneRows
@@ -23,7 +24,8 @@ class DiskMemories:
     ----------
     factors : (layers, 2, K) see `factors_of`. layer : (m,) number of the layer of each disk. rows : their contacts.
     nodes : their range among the scene's nodes. layout : the slots of these. supported : (k,) ascending slots of all
-    supported nodes. crossing : memories of contacts between layers. drag : on the disks.
+    supported nodes, and of others that do no two steps in one sweep. crossing : memories of contacts between layers.
+    drag : on the disks.
     """
 
     def __init__(
@@ -50,10 +52,14 @@ class DiskMemories:
         inner[unused] = np.repeat(np.where(unused, 0, inner).max(axis=1), unused.sum(axis=1))
         special[block:end] |= 2 * (inner.min(axis=1) != inner.max(axis=1)).astype(np.uint8)
         self._slot = slot - LANES * block
-        memory = aligned_zeros(3 * factors.shape[2], LANES * (end - block))
+        memory = aligned_zeros(3 * factors.shape[2] * LANES * (end - block))
         force = aligned_zeros(3, layout.count)
         rest, held = np.zeros((3, 0)), np.zeros(1)
-        self.arrays = Memories(block, layers, special, factors, memory, rest, force, held, crossing, drag)
+        ahead = steps_ahead(rows, special)
+        mechanisms = tuple(np.zeros(factors.shape[2]).tolist())
+        self.arrays = Memories(
+            block, layers, special, factors, memory, rest, force, held, crossing, drag, ahead, mechanisms
+        )
 
     def rest_at(self, u: np.ndarray, force: np.ndarray) -> None:
         """Remember only differences from contact forces (3, slots) at rest, at displacements u (3, slots)."""
@@ -64,13 +70,20 @@ class DiskMemories:
         remember_crossing(crossing._replace(factors=factors, memory=memory, rest=np.zeros_like(rest), taken=rest), u, u)
         self.arrays = self.arrays._replace(rest=force, crossing=crossing._replace(rest=rest))
 
+    @property
+    def _blocks(self) -> np.ndarray:
+        """The memories (blocks, K, 3, 8), a view."""
+        return self.arrays.memory.reshape(-1, self.arrays.factors.shape[2], 3, LANES)
+
     def saved_arrays(self) -> Arrays:
-        """The memories (3K, m) of the disks, and (t, 3, K) of contacts between layers."""
-        return {"memory": np.take(self.arrays.memory, self._slot, axis=1), "crossing": self.arrays.crossing.memory}
+        """The memories (m, K, 3) of the disks, and (t, 3, K) of contacts between layers."""
+        block, lane = np.divmod(self._slot, LANES)
+        return {"memory": self._blocks[block, :, :, lane], "crossing": self.arrays.crossing.memory}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self.arrays.memory[:, self._slot] = saved["memory"]
+        block, lane = np.divmod(self._slot, LANES)
+        self._blocks[block, :, :, lane] = saved["memory"]
         self.arrays.crossing.memory[...] = saved["crossing"]
 
 
@@ -136,7 +149,10 @@ def disk_memories(
         return None
     factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
     drag = _drag(scene, nodes, supported, time_step)
-    return DiskMemories(factors, layer, rows, nodes, scene.layout, supported, crossing, drag)
+    kept = supported
+    if scene.twin is not None:  # dashpots follow the velocities of twins at every step
+        kept = np.union1d(supported, scene.layout.slot[scene.twin[scene.twin != np.arange(scene.count)]])
+    return DiskMemories(factors, layer, rows, nodes, scene.layout, kept, crossing, drag)
 
 
 def drag_rates(scene: DiskBody) -> np.ndarray:

@@ -143,14 +143,31 @@ class Drag(NamedTuple):
     before: np.ndarray
 
 
+class Ahead(NamedTuple):
+    """Two steps in one sweep over the disks of a part, so that both take them from RAM once.
+
+    early : (blocks,) uint8 of the scene, 1 for blocks that need no others than such that move without supports and are
+    less than `lag` tiles away; once these have done a step, early ones can do the next. lag is 0 where none are.
+    state : (2,) what is done in this step, and its number. works : (chunks, 48) W, power taken from late blocks after
+    and before this step, and from early ones in this step and in the next, in lanes.
+    """
+
+    early: np.ndarray
+    lag: int
+    state: np.ndarray
+    works: np.ndarray
+
+
 class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
     layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
     uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of
-    several layers. memory : (3K, n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which
+    several layers. memory : (n/8·K·3·8,) N and N·m, of each block of eight disks mechanism by mechanism, of each
+    component by component. rest : (3, slots) contact forces at rest, which
     nothing remembers, or (3, 0) for none. force (3, slots), held (1,) : work space. crossing : of contacts between
-    layers. drag : NoDrag, or Drag, which is not remembered.
+    layers. drag : NoDrag, or Drag, which is not remembered. ahead : which disks do two steps in one sweep.
+    mechanisms : K numbers that are not used; K is part of the type, so known when compiled.
     """
 
     block: int
@@ -163,6 +180,8 @@ class Memories(NamedTuple):
     held: np.ndarray
     crossing: Crossing
     drag: NoDrag | Drag
+    ahead: Ahead
+    mechanisms: tuple[float, ...]
 
 
 class DampedLinks(NamedTuple):
