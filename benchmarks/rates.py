@@ -1,4 +1,4 @@
-"""Speed of stepping, packing and running disks, and its share of what the machine can do.
+"""Speed of stepping and packing disks, and its share of what the machine can do.
 
     python benchmarks/rates.py [--sections steps copies ...] [--threads 1 2] [--json results/benchmarks/rates.json]
 
@@ -8,7 +8,6 @@ steps     particle-steps per second of shipped cases under the elastic law and b
           compiled loop, and all of `Simulation.advance`; share of the bandwidth of an array copy measured at the time
 copies    particle-steps per second for 1 to 100 copies of a brick
 sizes     particle-steps per second for 1e4 to 1e6 particles, with --large also 4e6
-commands  CPU seconds of whole commands, in the first run and later
 packing   CPU seconds of packing a brick
 
 Everything is compiled first; blocks of a fraction of a second are timed and their medians taken. Rates of one thread
@@ -17,16 +16,13 @@ are computed from CPU time, which other programs on the machine hardly change, t
 
 import argparse
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 import pack_rate
-from processes import whole
 from stepping import LAWS, bar, prepare, set_in_motion, steps_for
 from timing import ROOT, Times, in_one_line, machine, quartiles, show, small_option, timed, write
 from traffic import cost_of_step
@@ -45,18 +41,6 @@ CASES = {
 """Cases of the section `steps` → their files."""
 
 WITH_ALL_LAWS = ("quickstart", "long_bar_b")
-
-FILES = (
-    "quickstart", "lu2016/table1_row1", "zhou2018/tunnel", "zhou2018/tunnel_a", "zhou2018/tunnel_window", "gravity",
-)  # fmt: skip
-"""Arguments of `COMMANDS` that stand for case files."""
-
-COMMANDS = {
-    "--help": ["--help"],
-    "run quickstart": ["run", "quickstart"],
-    **{f"run {name}": ["run", name] for name in FILES[1:]},
-    "run quickstart, linearpbond": ["run", "quickstart", "--set", "material.law=linearpbond"],
-}
 
 COPIES = ((1, 1), (2, 1), (2, 2), (3, 3), (5, 4), (10, 10))
 
@@ -191,40 +175,6 @@ def sizes(options: argparse.Namespace) -> list[dict[str, Any]]:
     return rows
 
 
-def _command(*arguments: str | Path) -> list[str | Path]:
-    return [sys.executable, "-m", "dembound", *arguments]
-
-
-def commands(options: argparse.Namespace) -> list[dict[str, Any]]:
-    """CPU seconds of whole commands in new processes; the first run of each is on an empty cache of compiled code."""
-    rows = []
-    for name, arguments in list(COMMANDS.items())[: 1 if options.small else None]:
-        called = [str(ROOT / "cases" / f"{a}.toml") if a in FILES else a for a in arguments]
-        with tempfile.TemporaryDirectory() as folder:
-            environment = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(Path(folder) / "compiled")}
-            run = partial(whole, _command(*called), Path(folder), environment)
-            first = run()
-            usages = [run() for _ in range(max(1, options.repeats // 2))]
-        low, cpu, high = quartiles([usage.cpu for usage in usages])
-        wall = float(np.median([usage.wall for usage in usages]))
-        memory = max(usage.memory for usage in usages) / 1e6
-        rows.append(
-            {"command": f"dembound {name}", "first_cpu": first.cpu, "cpu": cpu, "cpu_low": low, "cpu_high": high,
-             "wall": wall, "first_wall": first.wall, "megabytes": memory}
-        )  # fmt: skip
-    columns = {
-        "command": "`{command}`",
-        "CPU s": "{cpu:.2f}",
-        "spread": "{cpu_low:.2f}–{cpu_high:.2f}",
-        "wall s": "{wall:.2f}",
-        "largest memory, MB": "{megabytes:.0f}",
-        "first run, CPU s": "{first_cpu:.2f}",
-        "wall s, first run": "{first_wall:.2f}",
-    }
-    show("Whole commands", columns, rows)
-    return rows
-
-
 def packing(options: argparse.Namespace) -> list[dict[str, Any]]:
     return pack_rate.measured([10.0, 50.0] if options.large else [10.0], options.repeats)
 
@@ -233,7 +183,6 @@ SECTIONS: dict[str, Callable[[argparse.Namespace], list[dict[str, Any]]]] = {
     "steps": steps,
     "copies": copies,
     "sizes": sizes,
-    "commands": commands,
     "packing": packing,
 }
 
@@ -243,7 +192,7 @@ def main() -> None:
     parser.add_argument("--sections", nargs="+", choices=SECTIONS, default=list(SECTIONS), metavar="SECTION")
     parser.add_argument("--cases", nargs="+", choices=CASES, default=list(CASES), metavar="CASE", help="of `steps`")
     parser.add_argument("--threads", type=int, nargs="+", default=sorted({1, min(2, numba.config.NUMBA_NUM_THREADS)}))
-    parser.add_argument("--repeats", type=int, default=7, help="blocks of each measurement; half as many commands")
+    parser.add_argument("--repeats", type=int, default=7, help="blocks of each measurement")
     parser.add_argument("--seconds", type=float, default=0.3, help="CPU seconds of a block")
     parser.add_argument("--large", action="store_true", help="also 4 million particles and a brick of 10,795 disks")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/rates.json"))

@@ -76,15 +76,25 @@ def _version(package: str) -> str | None:
         return None
 
 
+def instruction_sets() -> list[str]:
+    """The instruction sets that decide how many numbers are computed at once, of those that numba compiles for."""
+    from llvmlite import binding
+
+    chosen = os.environ.get("NUMBA_CPU_FEATURES")
+    if chosen is not None:
+        return [name for name in INSTRUCTION_SETS if f"+{name}" in chosen.split(",")]
+    features = binding.get_host_cpu_features()
+    return [name for name in INSTRUCTION_SETS if features.get(name)]
+
+
 def machine() -> dict[str, Any]:
     """Processor, versions and revision that were measured, and the load of the machine by others before."""
     from llvmlite import binding
 
-    features = binding.get_host_cpu_features()
     return {
         "cpu": _cpu_model(),
         "architecture": binding.get_host_cpu_name(),
-        "instruction_sets": [name for name in INSTRUCTION_SETS if features.get(name)],
+        "instruction_sets": instruction_sets(),
         "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
         "caches": _caches(),
         "load_before": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,

@@ -3,19 +3,23 @@
 import time
 from pathlib import Path
 
+import numpy as np
+
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, RunError
 from dembound.machine import memory_here
 from dembound.motion.endings import peak_rule, silent_rule
-from dembound.motion.kind import Plan, echoes
+from dembound.motion.kind import Beginning, Plan, echoes
 from dembound.motion.memory import has_in_words, in_words
-from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Clock
 from dembound.results.histories import split_in_words
-from dembound.running import plan, require_ready, space_in_words, space_warnings, warnings_before
+from dembound.running import plan, require_ready, simulation_of, space_in_words, space_warnings, warnings_before
+from dembound.running.planning import steps_between_entries
 from dembound.words import Entries, percent, with_unit
 
-TRIAL_STEPS, TRIALS = 20, 3
+FEW, LONG, TRIALS = 20, 0.05, 3
+"""Least steps of a trial; seconds of one that has more, as what surrounds blocks of steps counts less then; trials."""
 
 
 def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], list[str]]:
@@ -42,9 +46,8 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
     yield "steps", f"{planned.steps:,} for {scene.case.run.duration:g} s{_until(planned)}"
     yield "memory", f"about {in_words(scene.largest_memory)} at its peak{_here()}"
     yield "disk", space_in_words(planned, results)
-    left_out = ", ".join(["building", *planned.kind.not_estimated(scene.case), "pictures"])
     try:
-        seconds = _estimate(planned)
+        seconds, most, words = _estimate(planned)
     except RunError as error:
         yield "estimated time", f"unknown, as in the first steps {error}"
     else:
@@ -52,8 +55,8 @@ def _run_facts(planned: Plan, results: Path) -> Entries:
         if planned.kind.settles(scene.case):  # 3,300 to 14,300 steps in shipped cases, 0.1 to 40 crossings of S waves
             many = with_unit(1000.0 * seconds / planned.steps, "s", 2)
             static = f"; the static stage comes on top: usually thousands of steps, about {many} for 1,000 of them"
-        time_needed = f"{duration_in_words(seconds)} with {counted(scene.threads, 'thread')}"
-        yield "estimated time", f"{time_needed}, without {left_out}{static}"
+        with_threads = f" with {counted(scene.threads, 'thread')}, without building, pictures{static}"
+        yield "estimated time", f"{_range_in_words(seconds, most, words)}{with_threads}"
     for name, reductions in (("reduced", scene.reduced), ("not reduced", planned.refused)):
         if reductions:
             yield name, "; ".join(reductions)
@@ -112,13 +115,35 @@ def duration_in_words(seconds: float) -> str:
     return f"about {round(seconds, -1 if seconds >= 19.5 else 0):.0f} s"
 
 
-def _estimate(planned: Plan) -> float:
-    """Seconds the run will take, from the quickest of a few short trials."""
-    simulation = Simulation(planned.stepped, planned.time_step)
-    simulation.advance(TRIAL_STEPS)  # compiles the kernels and starts the threads
-    trials = []
-    for _ in range(TRIALS):
-        began = time.perf_counter()
-        simulation.advance(TRIAL_STEPS)
-        trials.append(time.perf_counter() - began)
-    return min(trials) / TRIAL_STEPS * planned.steps
+def _range_in_words(least: float, most: float, words: str) -> str:
+    """Seconds of a run at the pace of its first steps and at its slowest, as "about 20 s intact, about 6 min …"."""
+    low, high = duration_in_words(least), duration_in_words(most)
+    return low if low == high else f"{low} at the pace of the first steps, {high} {words}"
+
+
+def _estimate(planned: Plan) -> tuple[float, float, str]:
+    """Seconds the run will take at the pace of its first steps and at its slowest, and when it is slowest.
+
+    The first is that of the quickest of a few short trials, of the clock: with one thread that of the CPU, which other
+    programs do not change. The slowest pace is known from constants, times the machine's speed as the trials show it.
+    """
+    scene, clock = planned.stepped, time.process_time if planned.stepped.threads == 1 else time.perf_counter
+    simulation, ledger = simulation_of(planned, Beginning(scene.system(planned.time_step)), Clock())
+
+    def trial(steps: int) -> float:
+        began = clock()
+        simulation.advance(steps)
+        return clock() - began
+
+    simulation.track(ledger)
+    simulation.advance(FEW)  # compiles the kernels and starts the threads
+    enough = min(max(FEW, int(FEW * LONG / max(trial(FEW), 1e-6))), max(FEW, planned.steps))
+    each = min(trial(enough) for _ in range(TRIALS)) / enough
+    ledger.due = simulation.state.step  # from one step to the next
+    entries = (trial(2) - 2.0 * each) * planned.steps / steps_between_entries(planned)
+    slower, least = planned.kind.slower(scene), each * planned.steps + max(0.0, entries)
+    if slower is None:
+        return least, least, ""
+    speed = float(np.clip(1e9 * each * scene.threads / slower.first, 0.5, 2.0))
+    more = 1e-9 * (slower.then - slower.first) * speed / scene.threads
+    return least, least + more * planned.steps, slower.words

@@ -6,7 +6,19 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dembound.kernels import tables
-from dembound.kernels.contacts import BONDED, CLOSING, INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import (
+    BONDED,
+    CLOSED,
+    CLOSES,
+    CLOSING,
+    INTACT,
+    NONE,
+    OPEN,
+    REFERENCE,
+    SHEAR,
+    TENSION,
+)
 from dembound.laws.law import Limits
 
 Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -183,10 +195,14 @@ class PlainPairs:
             # the push one step earlier, by work and by what it had stored
             pushed = k_n * max(overlapped, 0.0)
             stored = 0.5 * (push**2 - pushed**2) / k_n
-            pushed *= CLOSING if p.closed[c] else 1.0
+            was_open = p.closed[c] == OPEN
+            pushed *= CLOSING if p.closed[c] == CLOSES else 1.0
             if overlapped <= 0.0:
                 push *= CLOSING
-            p.closed[c] = overlapped <= 0.0 < overlap
+            p.closed[c] = OPEN if overlap <= 0.0 else (CLOSES if overlapped <= 0.0 else CLOSED)
+            if p.state[c] != INTACT and overlap <= 0.0 and was_open and limits.geometry != REFERENCE:
+                p.shear[c] = p.slip[c] = 0.0
+                return np.zeros(2), 0.0, 0.0  # open before and after
             self.lost[2] += 0.5 * (pushed + push) * (overlap - overlapped) - stored
             if abs(rub) > limits.friction * push:
                 rub_before, slip_before = k_s * (before - p.slip[c]), p.slip[c]
@@ -205,7 +221,7 @@ class PlainPairs:
             strength = limits.cohesion - b_n * stretch * per_area * limits.tan_fa
             if tension >= limits.tension or abs(b_s * shear) * per_area >= strength:
                 p.state[c] = TENSION if tension >= limits.tension else SHEAR
-                p.cracked[c] = number
+                p.cracked[c], p.closed[c] = number, CLOSED
                 # ½ k s⁻ s: what forces at whole steps have stored by the step at which they are gone
                 broken = 0.5 * b_n * stretch * (stretch - step * opening)
                 broken += 0.5 * b_s * shear * before + 0.5 * b_m * turn * (turn - step * turning)
@@ -244,13 +260,16 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         columns["state"].astype(np.uint8),
         np.zeros(b),
         np.zeros(b),
-        np.zeros(b, np.uint8),
+        np.full(b, CLOSED, np.uint8),
         np.full(b, -1),
         np.full((b, 2), np.nan),
         np.zeros(b, np.uint8),
         np.zeros((4, b)),
+        np.zeros((2, 0)),
+        np.zeros((2, 0)),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),
+        np.linspace(0, b, CHUNKS + 1).astype(np.int64),
     )
 
 
@@ -298,7 +317,8 @@ def alone(pairs: tables.Contacts, c: int) -> tables.Contacts:
     """Pair c of several, with columns of its own."""
     names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place", "kept")
     one = {name: getattr(pairs, name)[c : c + 1].copy() for name in names}
-    return pairs._replace(**one, force=pairs.force[:, c : c + 1].copy())
+    bound = np.minimum(np.arange(CHUNKS + 1), 1)
+    return pairs._replace(**one, force=pairs.force[:, c : c + 1].copy(), bound=bound)
 
 
 def behind(pairs: tables.Contacts, others: int) -> tables.Contacts:

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from dembound.accuracy.budget import Budget
+from dembound.accuracy.budget import Budget, Share
 from dembound.accuracy.choice import Choice
 from dembound.casefile import Case
 from dembound.errors import DemboundError
@@ -44,8 +45,12 @@ class Proposal:
 
     def holds(self, bound: float) -> bool:
         """Whether its upper error is within a bound at all monitors."""
-        share = self.budget.worst().share
-        return share.upper <= bound and not share.at_least
+        return self._share.upper <= bound and not self._share.at_least
+
+    @cached_property
+    def _share(self) -> Share:
+        """Its largest error, found once: of long records that takes a tenth of a second."""
+        return self.budget.worst().share
 
     def with_causes(self, causes: Causes) -> Proposal:
         """A proposal for this choice, to whose budget causes of errors are added."""
@@ -88,6 +93,9 @@ class Watch:
     def run(self, what: str) -> AbstractContextManager[Progress]:
         """The progress of a companion that begins."""
         return nullcontext(Progress())
+
+    def says(self, words: str) -> None:
+        """What is going to be computed, with its size, before it is."""
 
     def knows(self, causes: Sequence[Cause], motions: Motions, missing: str) -> None:
         """Causes are known, of these motions by monitor, while others are still missing, given in words."""

@@ -116,10 +116,11 @@ class Runner:
         """
         key = digest(case)
         if (found := self._kept.get(key)) is None:
-            with self._shown(name) as progress:
-                found, _, _ = measure(case, progress, inside=inside, timed=False)
+            planned = plan(case)
+            with self._shown(f"{name}, {planned.stepped.count:,} particles × {planned.steps:,} steps") as progress:
+                found, _, _ = measure(case, progress, inside=inside, timed=False, planned=planned)
             self._kept.add(key, found)
-            self.work += found.work
+            self.work += found.work + found.count * int((found.settled or {}).get("steps", 0))
             self.count += 1
         return found
 
@@ -130,7 +131,12 @@ def at_step(case: AnyCase, step: float) -> AnyCase:
 
 
 def measure(
-    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None, timed: bool = True
+    case: Case,
+    progress: Progress,
+    watched: bool = True,
+    inside: Box | None = None,
+    timed: bool = True,
+    planned: Plan | None = None,
 ) -> tuple[Run, float, float]:
     """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
 
@@ -138,13 +144,13 @@ def measure(
     watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
     which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
     timed : whether CPU time is measured, a query that takes half a millisecond on some systems; else elapsed time is
-    returned in its place.
+    returned in its place. planned : the case, if it has been planned before.
 
     Raises the errors of `running.plan` and of runs.
     """
     wall, cpu = Clock(), Clock(time.process_time) if timed else Clock()
     with wall.with_compiling(), wall.of("whole"):
-        planned = plan(case)
+        planned = planned or plan(case)
         beginning = planned.kind.begin(planned.stepped, planned.time_step, progress.settling)
         simulation, ledger = simulation_of(planned, beginning, cpu)
         records = Records()

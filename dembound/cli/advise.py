@@ -14,6 +14,7 @@ from dembound.cli.app import MORE, Cases, Settings, Threads, app, load_case, pre
 from dembound.cli.console import err, out, print_lines
 from dembound.cli.results import results_file
 from dembound.errors import CaseError, DemboundError, NotAccurateError, RecordError
+from dembound.machine import one_thread_for_matrices
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
@@ -72,7 +73,8 @@ Longest = Annotated[
         "--longest",
         min=0.0,
         metavar="SECONDS",
-        help="CPU seconds that the steps of a choice may take; by default 60, or 64 times those of the case.",
+        help="CPU seconds that the steps of a choice may take, by default 60, or 64 times those of the case; the "
+        "search and its companions take a fifth of it, or about 20 s, or as long as the case.",
     ),
 ]
 
@@ -98,6 +100,7 @@ def advise_cases(
 
     Only small scenes with larger disks are run; see docs/tasks/trust_a_result.md.
     """
+    one_thread_for_matrices()  # before numpy is imported
     from dembound.accuracy.estimate import BOUNDS, advise
     from dembound.cli.progress import Table, watched
 
@@ -238,6 +241,7 @@ def estimate(
 
     Writes estimate.h5 and the entry error_estimate of summary.json; see docs/tasks/trust_a_result.md.
     """
+    one_thread_for_matrices()  # before numpy is imported
     from dembound.accuracy.estimate import estimate_results
     from dembound.cli.progress import watched
     from dembound.results.folder import with_name

@@ -31,6 +31,9 @@ PRINTED = 15.0
 LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
 
+LONGEST = 20.0
+"""CPU seconds within which sides are measured by default."""
+
 COMPARED = (0.0, 30.0)
 """Angles (degrees) at which types of a side are compared by default."""
 
@@ -73,6 +76,12 @@ def boundary(
         bool, typer.Option("--quick", help="Quick estimate with a continuum in place of the disks.")
     ] = False,
     table: CurveTable = None,
+    longest: Annotated[
+        float,
+        typer.Option(
+            "--longest", min=0.0, metavar="SECONDS", help="CPU seconds, about, within which frequencies are measured."
+        ),
+    ] = LONGEST,
     changes: Settings = None,
 ) -> None:
     """Compute the energy that sides reflect, by angle and frequency.
@@ -89,6 +98,7 @@ def boundary(
         layers_beside,
         measure_side,
         measured_sides,
+        seconds_of,
     )
 
     prepare_computing(None)
@@ -99,6 +109,15 @@ def boundary(
     nowhere: tuple[str | None, ...] = (None,)
     parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
     given, hertz = sorted(set(angles or ())), sorted(set(frequencies or ()))
+    count, asked = len(hertz) or FREQUENCIES, (len(given) or len(ANGLES)) if not types else len(given or COMPARED)
+    each = seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
+    if not quick and each * count > longest:
+        fewer, all_of = int(longest / each), f"{count} frequencies take about {each * count:.0f} s of CPU time"
+        if hertz or types or fewer < 1:
+            fit = f"at most {longest:g} s are allowed; --longest {each * count:.0f} allows it"
+            raise CaseError([f"boundary: {all_of}, {fit}, --quick takes less, --side measures one side"])
+        err.print(f"{loaded.name}: {all_of}, so {fewer} are measured; --longest {each * count:.0f} measures all")
+        count = fewer
     for side, layer in parts:
         report = _report(side if layer is None else f"{side}, in {layer}")
         if types:
@@ -108,7 +127,7 @@ def boundary(
             figure = _compared(*found, words if layer is None else f"{words} in {layer}")
         else:
             measured = measure_side(
-                loaded, side, given or ANGLES, hertz or FREQUENCIES, report=report, quick=quick, layer=layer
+                loaded, side, given or ANGLES, hertz or count, report=report, quick=quick, layer=layer
             )
             figure = _measured(measured, loaded.name, side, layer)
         ending = "" if len(parts) == 1 else f"_{side}" if layer is None else f"_{side}_{layer}"

@@ -6,6 +6,7 @@ The table of advice is printed as it becomes known.
 import math
 import textwrap
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
@@ -22,6 +23,9 @@ from dembound.formulas.history import Motions
 from dembound.motion.trackers import Run
 from dembound.running import Progress
 from dembound.words import percent, with_unit
+
+PACE = 60.0
+"""Seconds up to now whose pace gives the time left: ground that breaks is stepped ever more slowly."""
 
 
 class Shown(Progress):
@@ -50,7 +54,7 @@ def progress_of(name: str) -> Iterator[Shown]:
     )
     COMPILATION.beside_bar = True
     try:
-        with RichProgress(*columns, console=err, transient=True) as bar:
+        with RichProgress(*columns, console=err, transient=True, speed_estimate_period=PACE) as bar:
             yield ProgressBar(bar, name)
     finally:
         COMPILATION.beside_bar = False
@@ -81,6 +85,10 @@ class Watching(Watch):
         """Show the steps of a companion."""
         self.begins(what)
         yield self.shown
+
+    def says(self, words: str) -> None:
+        """Print it in one line."""
+        err.print(f"{self.name}: {words}")
 
     def knows(self, causes: Sequence[Cause], motions: Motions, missing: str) -> None:
         """Print the causes in one line, once, which remains if the rest is interrupted."""
@@ -125,19 +133,18 @@ class Lines(Shown):
 
     def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
         self.name, self.now = name, now
-        self.began = self.begun = self.said = now()
+        self.began = self.begun = now()
         self.next = INTERVAL
         """Seconds of a static stage after which the next line is printed."""
-        self.steps: int | None = None
-        """Steps of the run at the last line; None before the first block."""
-        self.compiled = 0.0
-        """Seconds of compiling up to the last line, which a rate does not include."""
+        self.lines: deque[tuple[float, int, float]] = deque(maxlen=round(PACE / INTERVAL))
+        """Of the last lines, and the first block: time, steps, and seconds of compiling, which no rate includes."""
         self.stage = ""
         """The static stage of the last line."""
 
     def begin(self, name: str) -> None:
         """Print the name of what begins, unless a line was printed a short time ago."""
-        self.name, self.steps, self.stage, self.began, self.next = name, None, "", self.now(), INTERVAL
+        self.name, self.stage, self.began, self.next = name, "", self.now(), INTERVAL
+        self.lines.clear()
         if self.began - self.begun >= INTERVAL:
             self.begun = self.began
             err.print(name)
@@ -156,16 +163,16 @@ class Lines(Shown):
             err.print(f"{self.name}: {stage}, {took:.0f} s, {steps:,} steps, unbalanced force ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
-        """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
-        compiled = run.clock.seconds["compile"]
-        if self.steps is None:
-            self.said, self.steps, self.compiled = self.now(), run.state.step, compiled
-        elif (since := self.now() - self.said) >= INTERVAL:
-            stepping = since - (compiled - self.compiled)
-            rate = (run.state.step - self.steps) * run.scene.count / stepping / 1e6
-            self.said, self.steps, self.compiled = self.said + since, run.state.step, compiled
+        """Print steps done and in all, simulated time; from the last minute particle-steps per second and time left."""
+        now = self.now(), run.state.step, run.clock.seconds["compile"]
+        if not self.lines:
+            self.lines.append(now)
+        elif now[0] - self.lines[-1][0] >= INTERVAL:
+            since, done, compiling = (b - a for a, b in zip(self.lines[0], now, strict=True))
+            self.lines.append(now)
+            rate = done * run.scene.count / (since - compiling) / 1e6
             left = (steps - run.state.step) * run.scene.count / (1e6 * rate) if rate > 0.0 else math.inf
-            self.begun = self.said
+            self.begun = now[0]
             err.print(
                 f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
                 f"{rate:.3g} M particle-steps/s, about {with_unit(left, 's', 2)} left"

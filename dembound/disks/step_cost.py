@@ -1,34 +1,57 @@
-"""The time of a step of disks on one core."""
+"""The time of a step of disks on one core, from constants that `benchmarks/overview.py --sections constants` prints."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from dembound.casefile.disks.static import can_break
 from dembound.disks.scene import DiskScene
+from dembound.motion.kind import Slower
 
-ELASTIC_NODE, ABSORBING_NODE, TIE = 8.1, 15.0, 26.0
+ELASTIC_NODE, ABSORBING_NODE, TIE = 7.0, 12.0, 20.0
 """Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, outside and inside of layers.
 
 Ties are those of random packings; a tie of a lattice, which acts on the nodes of edges only, takes 15."""
 
+BROKEN = 420.0
+"""Nanoseconds of a step of a disk of ground all broken: pairs one by one, listed anew as disks fly."""
+
 DRIVE = 18.0
 """Nanoseconds of a force by which an oblique wave enters (cases/oblique.toml, 772 of them)."""
 
-DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, True): 55.0}
+DISK = {(True, False): 4.3, (False, False): 19.0, (True, True): 16.0, (False, True): 49.0}
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
-DASHPOTS = 30.0
+DASHPOTS = 31.0
 """Nanoseconds of a step of a disk by dashpots of its contacts, which are computed one by one."""
 
-DAMPED = 7.0
+DAMPED = 3.9
 """Nanoseconds of a step of a disk by three mechanisms of damping."""
 
 
 def time_per_disk(scene: DiskScene) -> float:
     """Nanoseconds of a step per disk of a scene."""
+    return _time_per_disk(scene, scene.has_history)
+
+
+def _time_per_disk(scene: DiskScene, has_history: bool) -> float:
+    """Nanoseconds of a step per disk, under the law with a history or the elastic one before it."""
     damped = DAMPED if scene.ground.is_damped else 0.0
     damped += DASHPOTS if scene.case.material.has_dashpots else 0.0
-    return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history] + damped
+    return DISK[scene.slots is not None and not scene.slots.is_plain, has_history] + damped
+
+
+def slower(scene: DiskScene) -> Slower | None:
+    """The slowest pace that a scene may come to; None if all steps take as long as the first."""
+    if not scene.has_history:
+        return None
+    case, begun = scene.case, sum(times_of_scene(scene).values())
+    first = begun - (time_per_disk(scene) - _time_per_disk(scene, not case.material.begins_elastic)) * scene.disk_count
+    breaks, bonded = can_break(case.materials), all(each.moduli.pb_emod > 0.0 for each in scene.ground.materials)
+    if bonded and not breaks:
+        return Slower("once contacts open or slide", first, begun) if first < begun else None
+    broken = begun + max(0.0, BROKEN - time_per_disk(scene)) * scene.disk_count
+    return Slower("all broken" if bonded else "all loose", first, broken)
 
 
 def times_of_continuum(nodes: float, absorbing: float, ties: float) -> dict[str, float]:

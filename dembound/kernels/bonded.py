@@ -6,9 +6,9 @@ from numba import njit
 from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, U, column_sum, largest
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
-from dembound.kernels.contacts import push as push_pairs
 from dembound.kernels.law import is_law, is_tie
 from dembound.kernels.near import room
+from dembound.kernels.single_pairs import push as push_pairs
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Bonded, SeamEnds
 
@@ -33,7 +33,8 @@ def check(bonded, u, u_next, v):
 
 @njit(**FAST)
 def note_lost(lost, work):
-    """Add to work (2, 7) the energy that pairs have taken up to the whole step, lost (chunks, 4), see contacts.push."""
+    """Add to work (2, 7) the energy that pairs have taken up to the whole step, see single_pairs.push."""
+    work[0, 1] += column_sum(lost, 4)
     work[0, 2] += column_sum(lost, 0)
     work[0, 3] += column_sum(lost, 1)
     work[0, 6] += column_sum(lost, 2)
@@ -45,7 +46,7 @@ def note_lost(lost, work):
 @njit(**FAST)
 def push(bonded, u, u_next, v, number, step, work):
     """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
-    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, bonded.lost, 0)
+    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, bonded.lost)
     if breaks > 0:
         note_places(u, number, bonded.contacts)
     note_lost(bonded.lost, work)

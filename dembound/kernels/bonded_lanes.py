@@ -1,7 +1,7 @@
 """The history-dependent law on rows of copies, eight disks at once (lanes.py).
 
-The forces of pairs in rows are those of pair_lanes.py. Pairs that are in no row, found by search or between groups
-of different shapes, are computed one by one, and their forces are added to those of the rows.
+Pairs that are in no row were found by search, or are between groups of different shapes (single_pairs.py); their forces
+are added to those of the rows (pair_lanes.py).
 """
 
 import numpy as np
@@ -12,7 +12,6 @@ from dembound.kernels.common import FAST, INLINED, U
 from dembound.kernels.compiler.lanes import LANES, at_most, bits, choose, lane, larger, load, splat
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.contacts import ends_force, note_places
-from dembound.kernels.contacts import push as push_others
 from dembound.kernels.lane_step import (
     blocks_of,
     first_at,
@@ -24,6 +23,7 @@ from dembound.kernels.lane_step import (
 )
 from dembound.kernels.law import is_law
 from dembound.kernels.pair_lanes import push_rows
+from dembound.kernels.single_pairs import push as push_others
 from dembound.kernels.tables import LaneBonded
 
 
@@ -148,9 +148,8 @@ def check(lanes, u, u_next, v):
 def push(lanes, u, u_next, v, number, step, work):
     """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
     bonded = lanes.bonded
-    others = LANES * lanes.pairs.exists.size
     breaks = push_rows(u, v, step, number, lanes.pairs, bonded.contacts, bonded.limits, bonded.lost)
-    breaks += push_others(u, v, step, number, bonded.contacts, bonded.limits, lanes.also_lost, others)
+    breaks += push_others(u, v, step, number, bonded.contacts, bonded.limits, lanes.also_lost)
     if breaks > 0:
         note_places(u, number, bonded.contacts)
     law.note_lost(bonded.lost, work)

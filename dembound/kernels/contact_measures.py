@@ -79,12 +79,15 @@ def _strain_energies(begin, end, u, contacts, limits, stored):
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state = contacts.constants, contacts.began, contacts.state
     all_shear, slip, geometry = contacts.shear, contacts.slip, limits.geometry
-    b = first.size
+    bound = contacts.bound
+    in_rows = bound[0]
     for chunk in range(begin, end):
         in_contacts = 0.0
         in_bonds = 0.0
-        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
-            c = U(p)
+        first_in_rows = chunk * in_rows // CHUNKS
+        count = (chunk + 1) * in_rows // CHUNKS - first_in_rows
+        for p in range(count + bound[chunk + 1] - bound[chunk]):
+            c = U(first_in_rows + p) if p < count else U(bound[chunk] + p - count)
             i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
             intact = state[c] == INTACT
             if geometry >= REFERENCE or (geometry == BONDED and intact):

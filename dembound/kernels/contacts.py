@@ -13,10 +13,10 @@ Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, U, column_sum
-from dembound.kernels.compiler.lanes import choose, larger
+from dembound.kernels.common import FAST, INLINED, U
+from dembound.kernels.compiler.lanes import at_most, choose, larger
 from dembound.kernels.compiler.limits import factor_of
-from dembound.kernels.compiler.separate import apart, in_chunks
+from dembound.kernels.compiler.separate import apart
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_law import (
     bond,
@@ -29,6 +29,7 @@ from dembound.kernels.pair_law import (
     slip_at,
     slips_by_overlap,
     stored_between,
+    viscosity,
 )
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 from dembound.pairwise import P
@@ -45,6 +46,15 @@ UPDATED, BONDED, REFERENCE, SLID = 0, 1, 2, 3
 UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: intact bonds keep the initial geometry.
 REFERENCE: all pairs keep it, and contacts that are closed at the start neither open nor slide. SLID, only for energies:
 REFERENCE for contacts that slid earlier."""
+
+OPEN, CLOSES, CLOSED = 0, 1, 2
+"""Whether a contact pushed in the last step: it did not, for the first time, or it did before, too.
+
+Pairs that are open before and after a step, and without bond, are left out: nothing of them may change.
+"""
+
+LOST = 5
+"""Numbers that a chunk of pairs counts in a step, see single_pairs.push."""
 
 CLOSING = 1.05
 """Factor of a contact's first push after it was open.
@@ -73,14 +83,27 @@ def closing_work(limits, constants, k, before, now, had_closed, push):
     return 0.5 * ((was + push) * (now - before)) - stored_between(limits, constants, k, closed, closes)
 
 
+@njit(**INLINED)
+def resistance(limits, constants, k, overlap, viscosities, opening, sliding):
+    """Forces (N) of the dashpots of contacts, with which they push and rub; numbers or lanes.
+
+    They resist the rate of the overlap, but no contact pulls by it, and the rate of the shear, whether or not the
+    contact slides: mode 1 of PFC's linear model. viscosities : N·s/m of both; opening, sliding : rates (m/s) half a
+    step before the displacements (`disks.stability`).
+    """
+    share = viscosity(limits, constants, k, overlap)
+    push = larger(0.0 - share * viscosities[0] * opening, 0.0 - normal(limits, constants, k, overlap))
+    is_open = at_most(overlap, 0.0)
+    return choose(is_open, 0.0, push), choose(is_open, 0.0, share * viscosities[1] * sliding)
+
+
 @njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
 def push_pair(c, u, v, step, number, contacts, limits, lost):
-    """Force of pair c, see `push`; returns the energy (J) taken by friction, and enters the rest in lost (4,)."""
+    """Force of pair c alone; lost (5,) is advanced, see `single_pairs.push`."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
     constants, began, state, force = contacts.constants, contacts.began, contacts.state, contacts.force
     all_shear, all_slip, closed, cracked = contacts.shear, contacts.slip, contacts.closed, contacts.cracked
     geometry = limits.geometry
-    taken = 0.0
     i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
     intact = state[c] == INTACT
     keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
@@ -103,9 +126,9 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
         overlapped = overlap + step * opening  # one step earlier
         if overlapped <= 0.0:
             N *= CLOSING
-        if closed[c] != 0 or (overlapped <= 0.0) != (overlap <= 0.0):
-            lost[2] += closing_work(limits, constants, k, overlapped, overlap, closed[c] != 0, N)
-            closed[c] = overlapped <= 0.0 < overlap
+        if closed[c] == CLOSES or (overlapped <= 0.0) != (overlap <= 0.0):
+            lost[2] += closing_work(limits, constants, k, overlapped, overlap, closed[c] == CLOSES, N)
+        closed[c] = OPEN if overlap <= 0.0 else (CLOSES if overlapped <= 0.0 else CLOSED)
         slid = slip
         if slips_by_overlap(limits):
             slid = slip_after(limits, constants, k, overlapped, overlap, was, slip)
@@ -119,9 +142,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
                 slid = slip_at(limits, constants, k, overlap, shear, S)
             taken = rubbed(limits, constants, k, overlapped, overlap, was, shear, slip, slid, before, S)
             all_slip[c] = slid
-            if taken < 0.0:  # the force has changed its sign within the step
-                lost[2] += taken
-                taken = 0.0
+            lost[0 if taken > 0.0 else 2] += taken  # below zero the force has changed its sign within the step
         if overlap <= 0.0 and not keeps_geometry and not intact:
             all_shear[c] = 0.0  # as if the pair was met anew when it closes, so that bits do not depend on the list
             all_slip[c] = 0.0
@@ -142,6 +163,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             state[c] = TENSION if torn else SHEAR
             cracked[c] = number
             all_shear[c] = shear
+            closed[c] = CLOSED  # so that the next step looks at it
             turning = v[U(2), j] - v[U(2), i]
             broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
             if geometry == BONDED:  # the contact changes to the updated geometry
@@ -150,39 +172,27 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
                 broken += stored_between(limits, constants, k, later, max(overlap, 0.0))
             lost[1 if broken > 0.0 else 2] += broken
             lost[3] += 1.0
+    if contacts.viscosity.shape[1] > 0:
+        viscous, drag = contacts.viscosity, contacts.drag
+        sliding = slide(i, j, k, nx, ny, distance, v, constants)
+        viscosities = viscous[U(0), c], viscous[U(1), c]
+        push, rub = resistance(limits, constants, k, overlap, viscosities, opening, sliding)
+        lost[4] += 0.5 * step * ((drag[U(1), c] + rub) * sliding - (drag[U(0), c] + push) * opening)
+        drag[U(0), c], drag[U(1), c] = push, rub
+        pull -= push
+        S += rub
     force[U(0), c] = pull * nx - S * ny
     force[U(1), c] = pull * ny + S * nx
     force[U(2), c] = arm_i * S + moment
     force[U(3), c] = arm_j * S - moment
-    return taken
 
 
-@in_chunks
+@apart()
 @njit(**FAST)
-def _push(first_chunk, last_chunk, u, v, step, number, contacts, limits, lost, begin):
-    b = contacts.first.size - begin
-    for chunk in range(first_chunk, last_chunk):
-        taken = 0.0
-        own = lost[chunk]
-        for k in range(4):
-            own[k] = 0.0
-        for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
-            taken += push_pair(U(p), u, v, step, number, contacts, limits, own)
-        own[0] = taken
-
-
-@njit(**FAST)
-def push(u, v, step, number, contacts, limits, lost, begin):
-    """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
-
-    Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 4) receives the energy
-    (J) taken in this step by friction, by cracks and by contacts that open and close, and the number of bonds that
-    broke. In pairs whose force changes its sign in the step friction and cracks take no energy; the energy that they
-    then add is subtracted from that by opening and closing. begin : the first pair. Returns the number of bonds that
-    broke.
-    """
-    _push(u, v, step, number, contacts, limits, lost, begin)
-    return int(column_sum(lost, 3))
+def push_each(pairs, u, v, step, number, contacts, limits, lost):
+    """Forces of some pairs (k,) uint32, one by one; lost (5,) is advanced, see `single_pairs.push`."""
+    for k in range(pairs.size):
+        push_pair(U(pairs[k]), u, v, step, number, contacts, limits, lost)
 
 
 @apart()
@@ -212,22 +222,20 @@ def ends_force(row, force, start, end):
     return fx, fy, moment
 
 
-@in_chunks
-@njit(**FAST)
-def _sum_forces(first_chunk, last_chunk, contacts, total):
-    force, start, end = contacts.force, contacts.start, contacts.end
-    begin = contacts.begin
-    n = start.size - 1 - begin
-    for chunk in range(first_chunk, last_chunk):
-        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
-            i = U(p)
-            total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, force, start, end)
-
-
 @njit(**FAST)
 def sum_forces(contacts, total):
     """Fill total (3, n) of the contacts' particles with the sums of their last forces and moments."""
-    _sum_forces(contacts, total)
+    first, second, force = contacts.first, contacts.second, contacts.force
+    total[:] = 0.0
+    for p in range(first.size):
+        c = U(p)
+        i, j = U(first[c]), U(second[c])
+        total[U(0), i] += force[U(0), c]
+        total[U(1), i] += force[U(1), c]
+        total[U(2), i] += force[U(2), c]
+        total[U(0), j] -= force[U(0), c]
+        total[U(1), j] -= force[U(1), c]
+        total[U(2), j] += force[U(3), c]
 
 
 @njit(**FAST)

@@ -37,3 +37,39 @@ def pieces(contacts, begin, end):
     for i in range(begin, end):
         piece[i - begin] = _root(parent, i) - begin
     return piece
+
+
+@njit(**MAKES)
+def broken_off(contacts, slot, torn, kept):
+    """Whether each disk (m,) is in a piece that has broken off, and whether it has just lost its last bond.
+
+    A piece has broken off if it has no disk that is kept (m,), or where none is, is not the largest, and one of its
+    bonds has ever broken. slot : (m,) of each disk. torn : (m,) bool, disks of which a bond has broken before, to which
+    those are added whose bonds have broken since cracks were last recorded.
+    """
+    begin, end = slot.min(), slot.max() + 1
+    piece = pieces(contacts, begin, end)
+    fresh, bonds = np.zeros(end - begin, np.bool_), np.zeros(end - begin, np.int64)
+    for p in range(contacts.first.size):
+        c = U(p)
+        i, j = np.int64(contacts.first[c]) - begin, np.int64(contacts.second[c]) - begin
+        if contacts.cracked[c] >= 0:
+            fresh[i] = fresh[j] = True
+        if contacts.state[c] == INTACT:
+            bonds[i] += 1
+            bonds[j] += 1
+    held, has_torn, size = np.zeros(end - begin, np.bool_), np.zeros(end - begin, np.bool_), np.zeros(end - begin)
+    for p in range(slot.size):
+        own = piece[slot[p] - begin]
+        torn[p] |= fresh[slot[p] - begin]
+        held[own] |= kept[p]
+        has_torn[own] |= torn[p]
+        size[own] += 1.0
+    if not held.any():
+        held[np.argmax(size)] = True
+    debris, alone = np.zeros(slot.size, np.bool_), np.zeros(slot.size, np.bool_)
+    for p in range(slot.size):
+        own = piece[slot[p] - begin]
+        debris[p] = has_torn[own] and not held[own]
+        alone[p] = fresh[slot[p] - begin] and bonds[slot[p] - begin] == 0
+    return debris, alone

@@ -123,7 +123,7 @@ def _rooms(first_chunk, last_chunk, cells, found, rooms):
 
 
 MARGIN = 1.0 + 1e-9  # of distances that only choose candidates, so that rounding misses no pair
-BITS = 4  # of the image's number, which follows that of the second disk in one code
+CODES = 9  # of images from −1 to 1 along x and y: 3(x + 1) + y + 1
 
 
 def near_pairs(positions, radii, gap, periods):
@@ -135,21 +135,46 @@ def near_pairs(positions, radii, gap, periods):
     (0, 0).
     """
     count = len(radii)
-    if count == 0:
-        return np.empty((0, 2), np.int32), np.empty((0, 2), np.int8)
+    return pairs_of(near_keys(positions, radii + 0.5 * gap, periods, np.arange(count)), count)
+
+
+def near_keys(positions, reach, periods, names, usual=np.inf):
+    """Keys (b,) int64, ascending, of pairs of disks at most as far apart as the sum of what they reach (n,) m.
+
+    positions (n, 2), periods (2,) : see `near_pairs`. names (n,) : the ascending numbers of the disks in keys,
+    (i·(largest + 1) + j)·9 + code of the image. usual : m, what most disks reach at most; cells are made for these.
+    Disks that reach −inf have no pairs.
+    """
+    if len(reach) == 0:
+        return np.empty(0, np.int64)
+    usual, most = min(usual, reach.max()), reach.max()
     # NumPy is slow along the first axis
     low = np.array([positions[:, 0].min(), positions[:, 1].min()])
     high = np.array([positions[:, 0].max(), positions[:, 1].max()])
-    width = (2.0 * radii.max() + gap) * MARGIN
-    shape = table_shape(high - low, width, count)
+    width = 2.0 * usual * MARGIN
+    shape = table_shape(high - low, width, len(reach))
     order, start = sort_into_cells(positions, low, width, shape)
-    found, room = 4 * count, -1
+    reaching = reach[order]
+    usually = np.where(reaching > usual, -np.inf, reaching)
+    table = positions[order, 0], positions[order, 1], reaching, usually, order
+    picked = np.empty(len(order), np.int64)
+    found, room = 4 * len(reach), -1
     while found > room:  # once, unless the disks are crowded
         room = found
-        first, codes = np.empty(room, np.int64), np.empty(room, np.int64)
-        found = search(positions, radii, gap, periods, low, high, width, shape, order, start, first, codes)
-    pairs, images = np.empty((found, 2), np.int32), np.empty((found, 2), np.int8)
-    unpack(first, codes, pairs, images)
+        keys = np.empty(room, np.int64)
+        found = search(
+            positions, reach, usual, most, periods, low, high, width, shape, start, table, picked, names, keys
+        )
+    keys = keys[:found]
+    if most > usual:
+        keys.sort()
+    return keys
+
+
+def pairs_of(keys, span):
+    """Pairs (b, 2) int32 and images (b, 2) int8 of keys (b,) of disks numbered up to span − 1."""
+    pairs, images = np.empty((len(keys), 2), np.int32), np.empty((len(keys), 2), np.int8)
+    unpack(keys, span, pairs, images)
     return pairs, images
 
 
@@ -218,112 +243,116 @@ def insert(codes, begin, end, code):
 
 
 @njit(**FAST)
-def unpack(first, codes, pairs, images):
-    """Fill pairs (b, 2) and images (b, 2) from first disks and codes."""
-    for k in range(pairs.shape[0]):
+def unpack(keys, span, pairs, images):
+    """Fill pairs (b, 2) and images (b, 2) from keys."""
+    for k in range(keys.size):
         c = U(k)
-        pairs[c, 0], pairs[c, 1] = first[c], codes[c] >> BITS
-        image = codes[c] & ((1 << BITS) - 1)
-        images[c, 0], images[c, 1] = image // 3 - 1, image % 3 - 1
+        pair = keys[c] // CODES
+        code = keys[c] - CODES * pair
+        pairs[c, 0], pairs[c, 1] = pair // span, pair % span
+        images[c, 0], images[c, 1] = code // 3 - 1, code % 3 - 1
 
 
 @njit(**FAST)
-def is_near(positions, radii, gap, i, j, shift_x, shift_y):
-    """Whether the gap between disk i and disk j, which is shifted, is at most `gap`; false for j before i."""
-    dx = positions[j, 0] + shift_x - positions[i, 0]
-    dy = positions[j, 1] + shift_y - positions[i, 1]
-    reach = (radii[i] + radii[j] + gap) * MARGIN
-    if j < i or dx * dx + dy * dy > reach * reach:
-        return False
-    return math.hypot(dx, dy) - radii[i] - radii[j] <= gap
+def reversed_code(code):
+    """The code of the opposite image."""
+    return CODES - 1 - code
 
 
 @njit(**FAST)
-def search(positions, radii, gap, periods, low, high, width, shape, order, start, first, codes):
-    """Number of near pairs; fills `first` with i and `codes` with j and image as far as there is room."""
+def pick(first, last, i, own_image, after, x, y, own, across, up, reach, number, picked, count):
+    """Add to picked (count of them) the entries first to last − 1 near disk i at x, y (m), of numbers above `after`.
+
+    own_image : whether the disk itself is an entry.
+    """
+    for k in range(first, last):
+        e = U(k)
+        dx, dy, r = across[e] - x, up[e] - y, own + reach[e]
+        j = np.int64(number[e])
+        picked[U(count)] = k
+        count += int((dx * dx + dy * dy <= r * abs(r) * MARGIN) & (j > after) & (own_image | (j != i)))
+    return count
+
+
+@njit(**FAST)
+def search(positions, reach, usual, most, periods, low, high, width, shape, start, table, picked, names, keys):
+    """Number of near pairs; fills `keys` as far as there is room, those of each first disk of usual reach sorted.
+
+    table : place along x and y, reach, usual reach and number of each entry of the cells. Disks that reach further than
+    usual look at all cells so far around them, and others leave out pairs with these.
+    """
+    across, up, reach_of, usually, number = table
     found = 0
+    columns, rows = shape[0], shape[1]
+    span = names[names.size - 1] + 1
     for i in range(positions.shape[0]):
-        begin = found
-        for image in range(9):  # by x, then by y; number 4 is the box itself
+        begin, own = found, reach[i]
+        if own < 0.0:
+            continue
+        is_wide = own > usual
+        around = int((own + most) * MARGIN / width) + 1 if is_wide else 1
+        after = -1 if is_wide else i - 1
+        reaching = reach_of if is_wide else usually
+        for image in range(CODES):  # by x, then by y; number 4 is the box itself
             a, b = image // 3 - 1, image % 3 - 1
             if (a != 0 and periods[0] == 0.0) or (b != 0 and periods[1] == 0.0):
                 continue
-            shift_x, shift_y = a * periods[0], b * periods[1]
             # the pair's first disk is shifted back, so that the table need not contain images
-            x, y = positions[i, 0] - shift_x, positions[i, 1] - shift_y
-            if x < low[0] - width or x > high[0] + width or y < low[1] - width or y > high[1] + width:
+            x, y = positions[i, 0] - a * periods[0], positions[i, 1] - b * periods[1]
+            far = around * width
+            if x < low[0] - far or x > high[0] + far or y < low[1] - far or y > high[1] + far:
                 continue
             column, row = cell(x, low[0], width), cell(y, low[1], width)
-            for side in range(-1, 2):
-                at = (column + side & (shape[0] - 1)) * (shape[1] + 2) + (row & (shape[1] - 1))
-                for k in range(start[at], start[at + 3]):
-                    j = U(order[U(k)])
-                    if not is_near(positions, radii, gap, U(i), j, shift_x, shift_y) or (j == i and image <= 4):
-                        continue
-                    if found < codes.size:
-                        first[found] = i
-                        insert(codes, begin, found, (np.int64(j) << BITS) + image)
-                    found += 1
+            count, own_image = 0, image > 4
+            for side in range(-around, min(around, columns - around - 1) + 1):
+                first = (column + side & (columns - 1)) * (rows + 2)
+                if around == 1:
+                    at = first + (row & (rows - 1))
+                    count = pick(
+                        start[at],
+                        start[at + 3],
+                        i,
+                        own_image,
+                        after,
+                        x,
+                        y,
+                        own,
+                        across,
+                        up,
+                        reaching,
+                        number,
+                        picked,
+                        count,
+                    )
+                    continue
+                for above in range(-around, min(around, rows - around - 1) + 1):
+                    at = first + 1 + (row + above & (rows - 1))
+                    count = pick(
+                        start[at],
+                        start[at + 1],
+                        i,
+                        own_image,
+                        after,
+                        x,
+                        y,
+                        own,
+                        across,
+                        up,
+                        reaching,
+                        number,
+                        picked,
+                        count,
+                    )
+            for p in range(count):
+                e = U(picked[U(p)])
+                j = np.int64(number[e])
+                dx, dy, r = across[e] - x, up[e] - y, own + reach_of[e]
+                if dx * dx + dy * dy > r * r / MARGIN and math.hypot(dx, dy) - own - reach_of[e] > 0.0:
+                    continue
+                if j < i and reach_of[e] > usual:
+                    continue  # of two that reach further the first finds the second
+                if found < keys.size:
+                    code = image if i <= j else reversed_code(image)
+                    insert(keys, begin, found, (names[min(i, j)] * span + names[max(i, j)]) * CODES + code)
+                found += 1
     return found
-
-
-@njit(**FAST)
-def directed(first, second, x, y):
-    """The lower and the higher disk of a pair, and the periods along x and y from the lower to the higher as a code."""
-    if first > second or (first == second and (x < 0 or (x == 0 and y < 0))):
-        return second, first, 3 * (1 - x) + 1 - y
-    return first, second, 3 * (x + 1) + y + 1
-
-
-@njit(**MAKES)
-def numbers_of(pairs, images, first, second, listed_images, count):
-    """Number (b,) of each pair among those listed, in either order of their disks; −1 for others.
-
-    pairs (b, 2) and first, second (c,) listed ones, of `count` disks; images (b, 2), listed_images (c, 2) : periods
-    from the first to the second.
-    """
-    start = np.zeros(count + 2, np.int64)
-    for c in range(first.size):
-        start[min(first[c], second[c]) + 2] += 1
-    for i in range(2, count + 2):
-        start[i] += start[i - 1]
-    order = np.empty(first.size, np.int64)
-    for c in range(first.size):
-        low = min(first[c], second[c])
-        order[start[low + 1]] = c
-        start[low + 1] += 1
-    found = np.full(pairs.shape[0], -1, np.int64)
-    for k in range(pairs.shape[0]):
-        low, high, code = directed(pairs[k, 0], pairs[k, 1], images[k, 0], images[k, 1])
-        for e in range(start[low], start[low + 1]):
-            c = order[e]
-            _, other, own = directed(first[c], second[c], listed_images[c, 0], listed_images[c, 1])
-            if other == high and own == code:
-                found[k] = c
-                break
-    return found
-
-
-@njit(**MAKES)
-def ends_of(first, second, live, begin, stop):
-    """Offsets (stop + 1,) of the contact ends of disks `begin` to stop − 1, and these ends, ascending for each disk.
-
-    first, second (b,) uint32 disks of pairs in places live (b,), ascending; an end is twice the place, + 1 for the
-    second disk.
-    """
-    start = np.zeros(stop + 1, np.uint32)
-    at = np.zeros(stop - begin + 1, np.int64)
-    for k in range(live.size):
-        at[first[k] - begin + 1] += 1
-        at[second[k] - begin + 1] += 1
-    for i in range(1, stop - begin + 1):
-        at[i] += at[i - 1]
-        start[begin + i] = at[i]
-    end = np.empty(2 * live.size, np.uint32)
-    for k in range(live.size):
-        i, j = first[k] - begin, second[k] - begin
-        end[at[i]] = 2 * live[k]
-        at[i] += 1
-        end[at[j]] = 2 * live[k] + 1
-        at[j] += 1
-    return start, end

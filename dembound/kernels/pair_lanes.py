@@ -1,7 +1,13 @@
-"""Forces of history-dependent pairs in rows of copies, eight pairs at once (lanes.py).
+"""Forces of history-dependent pairs, eight at once (lanes.py), in rows of copies or in no row.
 
-The formulas are those of contacts.py. A block of eight pairs is computed pair by pair in the step in which one breaks,
-and, where intact bonds keep the geometry of the start, from then on.
+The formulas are those of contacts.py. A pair whose bond breaks in this step is computed there.
+
+Names that the functions share: law (k, began, q, kind, acts) are constants and strain from the start, the rows of the
+eight pairs in both and in the limits, and whether they may have contacts beside bonds; at (c, i, j) where the pairs and
+their first and second disks are; one number each where pairs are copies, or eight (lanes.py). exists : byte with the
+bits of the pairs to compute. taken (24,) is advanced by the energies (J) of the eight that friction, contacts that open
+and close, and dashpots take. breaking (9,) uint32 gets the number of pairs whose bond breaks, and these pairs, which
+contacts.push_each computes.
 """
 
 import numpy as np
@@ -16,18 +22,32 @@ from dembound.kernels.compiler.lanes import (
     choose,
     larger,
     load,
+    load_of,
     magnitude,
-    note_bits,
+    note_some,
+    nth,
     root,
     splat,
     store,
+    store_some,
+    store_some_of,
     where_equal,
     with_sign,
 )
 from dembound.kernels.compiler.limits import factors_of
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
-from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, closing_work, push_pair
+from dembound.kernels.contacts import (
+    BONDED,
+    CLOSED,
+    CLOSES,
+    CLOSING,
+    INTACT,
+    MAY_BREAK,
+    closing_work,
+    push_each,
+    resistance,
+)
 from dembound.kernels.lane_step import next_place, place_of
 from dembound.kernels.pair_law import (
     acts,
@@ -43,72 +63,28 @@ from dembound.kernels.pair_law import (
 )
 from dembound.pairwise import P
 
-_ALL = np.uint8(2**LANES - 1)
-_INTACT = np.uint8(INTACT)
+ALL = np.uint8(2**LANES - 1)
+"""The byte of eight pairs."""
+
+TAKEN = 3 * LANES
+"""Numbers in `taken`."""
+
+_INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY_BREAK, CLOSES, CLOSED))
 
 
 @njit(**INLINED)
-def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost):
-    """The pairs of a block in turn."""
-    for k in range(LANES):
-        if exists & np.uint8(1 << k):
-            c = U(LANES) * block + U(k)
-            lost[0] += push_pair(c, u, v, step, number, contacts, limits, lost)
+def _put(array, c, values, exists):
+    """Write numbers of those pairs that exist to an array (b,)."""
+    if exists == ALL:
+        store(array, c, values)
+    else:
+        store_some(array, c, values, exists)
 
 
 @njit(**INLINED)
-def _apart(u, i, j):
-    """Displacements of eight disks in slots from j on, relative to those from i on."""
-    return load(u[0], j) - load(u[0], i), load(u[1], j) - load(u[1], i)
-
-
-@njit(**INLINED)
-def _slide(way, arms, i, j, v):
-    """Rate (m/s) of the shear of pairs."""
-    (nx, ny), (arm_i, arm_j) = way, arms
-    dvx, dvy = _apart(v, i, j)
-    return nx * dvy - ny * dvx - arm_i * load(v[2], i) - arm_j * load(v[2], j)
-
-
-@njit(**INLINED)
-def _contact(
-    k, q, c, i, j, way, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits, kind, taken
-):
-    """Normal and shear force of contacts; their slip and closing are stored; see `_act`."""
-    overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
-    slip = load(contacts.slip, c)
-    N = normal(limits, k, q, overlap)
-    S = shear_of(limits, k, q, overlap, shear, slip)
-    if gives_way:
-        overlapped = overlap + step * opening
-        was_open = at_most(overlapped, 0.0)
-        N = larger(N, 0.0)
-        N = choose(was_open, CLOSING * N, N)
-        had_closed = where_equal(contacts.closed, c, np.uint8(1))
-        closed, was, now = byte_of(had_closed), byte_of(was_open), byte_of(at_most(overlap, 0.0))
-        passes = np.uint8((was ^ now | closed) & exists)
-        if passes != 0:
-            passed = closing_work(limits, k, q, overlapped, overlap, had_closed, N)
-            _add(taken, LANES, choose(bits(passes), passed, 0.0))
-            note_bits(contacts.closed, c, bits(np.uint8(was & ~now & exists)))
-        slid = slip
-        if slips_by_overlap(limits):
-            earlier = shear - step * _slide(way, arms, i, j, v)
-            slid = slip_after(limits, k, q, overlapped, overlap, earlier, slip)
-            S = shear_of(limits, k, q, overlap, shear, slid)
-        most = most_shear(limits, kind, N)
-        stays = at_most(magnitude(S), most)
-        if slips_by_overlap(limits) or (byte_of(stays) & exists) != exists:
-            earlier = shear - step * _slide(way, arms, i, j, v)
-            before = shear_of(limits, k, q, overlapped, earlier, slip)
-            S = choose(stays, S, with_sign(most, S))
-            slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
-            loss = rubbed(limits, k, q, overlapped, overlap, earlier, shear, slip, slid, before, S)
-            loss = choose(bits(exists), loss, 0.0)
-            store(contacts.slip, c, slid)
-            _add(taken, 0, larger(loss, 0.0))
-            _add(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
-    return N, S
+def _lanes(numbers):
+    """A number in all lanes, or lanes themselves."""
+    return splat(0.0) + numbers
 
 
 @njit(**INLINED)
@@ -118,150 +94,218 @@ def _add(sums, first, values):
 
 
 @njit(**INLINED)
-def _store_forces(force, c, exists, fx, fy, on_i, on_j):
-    """Store the forces of eight pairs, zero where there is none."""
-    if exists != _ALL:
-        there = bits(exists)
-        fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
-        on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
-    store(force[0], c, fx)
-    store(force[1], c, fy)
-    store(force[2], c, on_i)
-    store(force[3], c, on_j)
+def _apart(u, at):
+    """Displacements of second disks relative to those of first ones."""
+    _, i, j = at
+    return load_of(u, U(0), j) - load_of(u, U(0), i), load_of(u, U(1), j) - load_of(u, U(1), i)
 
 
 @njit(**INLINED)
-def _act(
-    c, q, i, j, block, exists, way, arms, strain, opening, gives_way, follows,
-    u, v, step, number, pairs, contacts, limits, taken, lost,
-):  # fmt: skip
-    """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
-
-    way, arms : directions of normals and lever arms, numbers or lanes; opening : speed at which the disks part, where a
-    contact gives way; follows : whether the geometry follows the motion. taken (16,) is advanced by the energies (J)
-    that friction, and contacts that open and close, take in the eight pairs; where these are computed in turn lost
-    (4,).
-    """
-    k, kind = pairs.constants, U(pairs.contact_type[q])
-    nothing = splat(0.0)
-    (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = way, arms, strain
-    whole = where_equal(contacts.state, c, _INTACT)
-    intact = byte_of(whole) & exists
-    pull, side, moment = nothing, nothing, nothing
-    if intact != 0:
-        pull, side, moment = bond(limits, k, q, stretch, shear, bent)
-        torn, cut = breaks(limits, k, q, kind, factors_of(limits.factor, c), pull, side, moment)
-        if ((byte_of(torn) | byte_of(cut)) & intact) != 0:
-            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost)
-            return
-        pull, side, moment = choose(whole, pull, 0.0), choose(whole, side, 0.0), choose(whole, moment, 0.0)
-    if acts(limits, k, q):
-        N, S = _contact(
-            k, q, c, i, j, way, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits, kind,
-            taken,
-        )  # fmt: skip
-        pull -= N
-        side += S
-    if follows:
-        gone = byte_of(at_most((k[q, P.touch] - k[q, P.rest]) - stretch, 0.0)) & ~intact & exists
-        if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
-            shear = choose(bits(np.uint8(gone)), 0.0, shear)
-            store(contacts.slip, c, choose(bits(np.uint8(gone)), 0.0, load(contacts.slip, c)))
-        store(contacts.shear, c, shear)
-    fx, fy = nx * pull - ny * side, ny * pull + nx * side
-    _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
+def _slide(way, arms, at, v):
+    """Rate (m/s) of the shear of pairs."""
+    (nx, ny), (arm_i, arm_j), (_, i, j) = way, arms, at
+    dvx, dvy = _apart(v, at)
+    return nx * dvy - ny * dvx - arm_i * load_of(v, U(2), i) - arm_j * load_of(v, U(2), j)
 
 
-@njit(**FAST)
-def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, limits, taken, lost):
-    """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
-    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
-    k = pairs.constants
-    nx, ny = pairs.way[q, U(0)], pairs.way[q, U(1)]
+@njit(**INLINED)
+def _contact(law, at, way, arms, overlap, shear, opening, v, step, exists, contacts, limits, taken):
+    """Normal and shear force of contacts; their slip and whether they push are stored."""
+    (k, _, q, kind, _), (c, _, _) = law, at
+    slip = load(contacts.slip, c)
+    N = normal(limits, k, q, overlap)
+    S = shear_of(limits, k, q, overlap, shear, slip)
+    overlapped = overlap + step * opening
+    was_open = at_most(overlapped, 0.0)
+    N = larger(N, 0.0)
+    N = choose(was_open, CLOSING * N, N)
+    had_closed = where_equal(contacts.closed, c, _CLOSES)
+    closed, was, now = byte_of(had_closed), byte_of(was_open), byte_of(at_most(overlap, 0.0))
+    changed = np.uint8((closed | ~(byte_of(where_equal(contacts.closed, c, _CLOSED)) ^ now) | was ^ now) & exists)
+    if changed != 0:
+        passed = closing_work(limits, k, q, overlapped, overlap, had_closed, N)
+        _add(taken, LANES, choose(bits(np.uint8((was ^ now | closed) & exists)), passed, 0.0))
+        note_some(contacts.closed, c, np.uint8(was & ~now), np.uint8(~was & ~now), exists)
+    slid = slip
+    if slips_by_overlap(limits):
+        earlier = shear - step * _slide(way, arms, at, v)
+        slid = slip_after(limits, k, q, overlapped, overlap, earlier, slip)
+        S = shear_of(limits, k, q, overlap, shear, slid)
+    most = most_shear(limits, kind, N)
+    stays = at_most(magnitude(S), most)
+    if slips_by_overlap(limits) or (byte_of(stays) & exists) != exists:
+        earlier = shear - step * _slide(way, arms, at, v)
+        before = shear_of(limits, k, q, overlapped, earlier, slip)
+        S = choose(stays, S, with_sign(most, S))
+        slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
+        loss = rubbed(limits, k, q, overlapped, overlap, earlier, shear, slip, slid, before, S)
+        loss = choose(bits(exists), loss, 0.0)
+        _put(contacts.slip, c, slid, exists)
+        _add(taken, 0, larger(loss, 0.0))
+        _add(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
+    return N, S
+
+
+@njit(**INLINED)
+def _resist(law, at, way, arms, overlap, opening, v, step, exists, contacts, limits, taken):
+    """Forces of dashpots, see `contacts.resistance`; what they take is added to taken."""
+    (k, _, q, _, _), (c, _, _), drag = law, at, contacts.drag
+    sliding = _slide(way, arms, at, v)
+    viscosities = load_of(contacts.viscosity, U(0), c), load_of(contacts.viscosity, U(1), c)
+    push, rub = resistance(limits, k, q, overlap, viscosities, opening, sliding)
+    loss = 0.5 * step * ((load_of(drag, U(1), c) + rub) * sliding - (load_of(drag, U(0), c) + push) * opening)
+    _add(taken, 2 * LANES, choose(bits(exists), loss, 0.0))
+    store_some_of(drag, U(0), c, push, exists)
+    store_some_of(drag, U(1), c, rub, exists)
+    return push, rub
+
+
+@njit(**INLINED)
+def _reference(law, at, way, u):
+    """Arms, stretch and shear in the geometry of the start, whose normals are `way`."""
+    (k, began, q, _, _), (_, i, j), (nx, ny) = law, at, way
     rest = k[q, P.rest]
     arm_i = 0.5 * rest + k[q, P.offset]
     arm_j = rest - arm_i
-    dx, dy = _apart(u, i, j)
-    turn_i, turn_j = load(u[2], i), load(u[2], j)
-    stretch = nx * dx + ny * dy + began_with(pairs.began, q, U(0))
-    shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j + began_with(pairs.began, q, U(1))
-    strain = stretch, shear, turn_j - turn_i + began_with(pairs.began, q, U(2))
-    gives_way = limits.geometry != REFERENCE or k[q, P.touch] < rest
-    opening = splat(0.0)
-    if gives_way:
-        dvx, dvy = _apart(v, i, j)
-        opening = nx * dvx + ny * dvy
-    _act(
-        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, opening, gives_way, False,
-        u, v, step, number, pairs, contacts, limits, taken, lost,
-    )  # fmt: skip
+    dx, dy = _apart(u, at)
+    stretch = nx * dx + ny * dy + began_with(began, q, U(0))
+    shear = nx * dy - ny * dx - arm_i * load_of(u, U(2), i) - arm_j * load_of(u, U(2), j) + began_with(began, q, U(1))
+    return arm_i, arm_j, stretch, shear
 
 
-@njit(**FAST)
-def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, taken, lost):
-    """Forces of a pair of lanes whose normals and arms follow the motion, see pair_strain.updated_strain."""
-    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
-    k = pairs.constants
-    dx, dy = _apart(u, i, j)
-    dvx, dvy = _apart(v, i, j)
+@njit(**INLINED)
+def _updated(law, at, u, v, step, contacts):
+    """Normals, arms, stretch and shear where normals and arms follow the motion, see pair_strain.updated_strain."""
+    (k, began, q, _, _), (c, _, _) = law, at
+    dx, dy = _apart(u, at)
     x = k[q, P.x] + dx
     y = k[q, P.y] + dy
     distance = root(x * x + y * y)
     stretch = ((k[q, P.x] + x) * dx + (k[q, P.y] + y) * dy) / (distance + k[q, P.rest])
-    stretch += began_with(pairs.began, q, U(0))
     inverse = 1.0 / distance
-    nx, ny = x * inverse, y * inverse
+    way = x * inverse, y * inverse
     arm_i = 0.5 * distance + k[q, P.offset]
-    arm_j = distance - arm_i
-    shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
-    strain = stretch, shear, load(u[2], j) - load(u[2], i) + began_with(pairs.began, q, U(2))
-    _act(
-        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True, True,
-        u, v, step, number, pairs, contacts, limits, taken, lost,
-    )  # fmt: skip
+    arms = arm_i, distance - arm_i
+    shear = load(contacts.shear, c) + step * _slide(way, arms, at, v)
+    return way[0], way[1], arms[0], arms[1], stretch + began_with(began, q, U(0)), shear
+
+
+@njit(**INLINED)
+def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaking):
+    """Forces of eight pairs; way : directions from the first disks to the second at the start.
+
+    Bonds keep the geometry of the start under BONDED. Pairs that do and those that do not take turns.
+    """
+    (k, began, q, kind, has_contact), (c, i, j) = law, at
+    whole = where_equal(contacts.state, c, _INTACT)
+    left = exists
+    while left != 0:
+        now = np.uint8(byte_of(whole) & left) if limits.geometry == BONDED else np.uint8(0)
+        follows = now == 0
+        if follows:
+            now = left
+            nx, ny, arm_i, arm_j, stretch, shear = _updated(law, at, u, v, step, contacts)
+        else:
+            one, other, stretch, shear = _reference(law, at, way, u)
+            nx, ny, arm_i, arm_j = _lanes(way[0]), _lanes(way[1]), _lanes(one), _lanes(other)
+        left = np.uint8(left & ~now)
+        dvx, dvy = _apart(v, at)
+        opening = nx * dvx + ny * dvy
+        pull, side, moment = splat(0.0), splat(0.0), splat(0.0)
+        intact = np.uint8(byte_of(whole) & now)
+        if intact != 0:
+            bent = load_of(u, U(2), j) - load_of(u, U(2), i) + began_with(began, q, U(2))
+            pull, side, moment = bond(limits, k, q, stretch, shear, bent)
+            torn, cut = breaks(limits, k, q, kind, factors_of(limits.factor, c), pull, side, moment)
+            broken = np.uint8((byte_of(torn) | byte_of(cut)) & intact)
+            if broken != 0:
+                held = np.uint8(broken & ~byte_of(where_equal(contacts.kept, c, _MAY_BREAK)))
+                note_some(contacts.kept, c, np.uint8(0), ALL, held)  # REACHED
+                broken = np.uint8(broken & ~held)
+                for each in range(LANES):
+                    if broken & np.uint8(1 << each):
+                        breaking[0] += 1
+                        breaking[breaking[0]] = nth(c, U(each))
+                now, intact = np.uint8(now & ~broken), np.uint8(intact & ~broken)
+            pull, side, moment = choose(whole, pull, 0.0), choose(whole, side, 0.0), choose(whole, moment, 0.0)
+        overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
+        normals, arms = (nx, ny), (arm_i, arm_j)
+        if has_contact:
+            N, S = _contact(law, at, normals, arms, overlap, shear, opening, v, step, now, contacts, limits, taken)
+            pull -= N
+            side += S
+        if follows:
+            gone = np.uint8(byte_of(at_most(overlap, 0.0)) & ~intact & now)
+            if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
+                shear = choose(bits(gone), 0.0, shear)
+                store_some(contacts.slip, c, splat(0.0), gone)
+            _put(contacts.shear, c, shear, now)
+        if contacts.viscosity.shape[1] > 0:
+            push, rub = _resist(law, at, normals, arms, overlap, opening, v, step, now, contacts, limits, taken)
+            pull -= push
+            side += rub
+        force = contacts.force
+        store_some_of(force, U(0), c, nx * pull - ny * side, now)
+        store_some_of(force, U(1), c, ny * pull + nx * side, now)
+        store_some_of(force, U(2), c, arm_i * side + moment, now)
+        store_some_of(force, U(3), c, arm_j * side - moment, now)
+
+
+@njit(**INLINED)
+def begin_sums(taken, lost):
+    """Set the sums of a chunk to zero."""
+    for k in range(TAKEN):
+        taken[U(k)] = 0.0
+    for k in range(lost.size):
+        lost[U(k)] = 0.0
+
+
+@njit(**INLINED)
+def end_sums(taken, lost):
+    """Add the energies of the lanes to those of the chunk, see `single_pairs.push`."""
+    for k in range(LANES):
+        lost[0] += taken[U(k)]
+        lost[2] += taken[U(LANES + k)]
+        lost[4] += taken[U(2 * LANES + k)]
 
 
 @njit(**FAST, forceinline=True)  # called, it would call the functions above in turn: twice the time
-def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost):
-    """The pairs in blocks first to last − 1; lost (4,) as of contacts.push, taken (16,) is work space."""
-    for k in range(4):
-        lost[k] = 0.0
-    for k in range(2 * LANES):
-        taken[k] = 0.0
+def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, breaking, lost):
+    """The pairs in blocks first to last − 1; lost (5,) gets what they take."""
+    begin_sums(taken, lost)
     if first == last:
         return
     group, column, q = place_of(pairs, first)
     for block in range(first, last):
         if block > first:
             group, column, q = next_place(pairs, block, group, column, q)
-        here, row, exists = U(block), U(q), pairs.exists[U(block)]
+        row, exists = U(q), pairs.exists[U(block)]
         if exists != 0:
             disks = pairs.disk_block[U(group)] + column * pairs.disk_rows[U(group)] + pairs.step[row, U(0)]
             i = U(LANES * disks)
-            intact = byte_of(where_equal(contacts.state, U(LANES) * here, _INTACT)) & exists
-            if limits.geometry == UPDATED or (limits.geometry == BONDED and intact == 0):
-                _push_updated(pairs, row, here, exists, i, u, v, step, number, contacts, limits, taken, lost)
-            elif limits.geometry == BONDED and intact != exists:
-                _push_one_by_one(here, exists, u, v, step, number, contacts, limits, lost)
-            else:
-                _push_reference(pairs, row, here, exists, i, u, v, step, number, contacts, limits, taken, lost)
-    for k in range(LANES):
-        lost[0] += taken[k]
-        lost[2] += taken[LANES + k]
+            at = U(LANES * block), i, i + U(pairs.step[row, U(1)])
+            k = pairs.constants
+            law = k, pairs.began, row, U(pairs.contact_type[row]), acts(limits, k, row)
+            way = pairs.way[row, U(0)], pairs.way[row, U(1)]
+            push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaking)
+            if breaking[0] != 0:
+                push_each(breaking[1 : 1 + breaking[0]], u, v, step, number, contacts, limits, lost)
+                breaking[0] = 0
+    end_sums(taken, lost)
 
 
 @in_chunks
 @njit(**MAKES)
 def _push_rows(begin, end, u, v, step, number, pairs, contacts, limits, lost):
     n = pairs.exists.size
-    taken = np.empty(2 * LANES)
+    taken, breaking = np.empty(TAKEN), np.zeros(1 + LANES, np.uint32)
     for chunk in range(begin, end):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
-        _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost[chunk])
+        _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, breaking, lost[chunk])
 
 
 @njit(**FAST)
 def push_rows(u, v, step, number, pairs, contacts, limits, lost):
-    """Forces of the pairs in rows, see contacts.push."""
+    """Forces of the pairs in rows, see single_pairs.push."""
     _push_rows(u, v, step, number, pairs, contacts, limits, lost)
     return int(column_sum(lost, 3))

@@ -53,6 +53,14 @@ class MovingPicture(Protocol):
         """One frame as a picture (rows, pixels, 3) of red, green and blue from 0 to 255."""
 
 
+class Slower(NamedTuple):
+    """A pace slower than that of the first steps: when, in words, and ns of a step on one core at first and then."""
+
+    words: str
+    first: float
+    then: float
+
+
 class Stages:
     """Receives the stages of a run. This class keeps nothing, so all stages are computed."""
 
@@ -248,9 +256,9 @@ class Kind(ABC, Generic[C, S]):
     def facts(self, scene: S, time_step: float) -> Entries:
         """Facts about a case with a time step (s); printed by `dembound check`."""
 
-    def not_estimated(self, case: C) -> list[str]:
-        """Work of a run that a time estimate from its first steps does not include, in words."""
-        return []
+    def slower(self, scene: S) -> Slower | None:
+        """The slowest pace that the steps of a run may come to; None if all take as long as the first ones."""
+        return None
 
     def settles(self, case: C) -> bool:
         """Whether a static stage precedes the motion, of a number of steps that is not known in advance."""

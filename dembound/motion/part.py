@@ -189,6 +189,10 @@ class System:
         if self.law_name != state.laws[-1][0]:
             state.laws.append((self.law_name, state.step))
 
+    def steps_to_look(self, step: int) -> int | None:
+        """Steps after which the loop has to return from this one for the system to look at it; None: any number."""
+        return None
+
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) at displacements (3, slots), see `Part.stored`."""
         stored = [part.stored(u) for part in self.parts]

@@ -236,11 +236,13 @@ class Simulation:
             supports.drive[...] *= np.where(self._supports.prescribed > 0.0, 1.0, 1.0 + self._supports.keep)
         done = 0
         while done < len(record):
-            remaining = supports._replace(drive=supports.drive[done:])
+            most = self.system.steps_to_look(self.state.step)
+            stop = len(record) if most is None else min(len(record), done + most)
+            remaining = supports._replace(drive=supports.drive[done:stop])
             measured = tables.NO_SIDES
             if self.sides is not None:
-                measured = self.sides.table(signals[done:], self.system, self.side_samples, self.state.side_work)
-            advanced = self._advance_under_one_law(record[done:], remaining, measured)
+                measured = self.sides.table(signals[done:stop], self.system, self.side_samples, self.state.side_work)
+            advanced = self._advance_under_one_law(record[done:stop], remaining, measured)
             if advanced == 0 and not np.isfinite(self.state.u).all():  # pairs cannot be listed, so no step follows
                 raise RunError(f"the motion grew without bound by t = {self.state.step * self.time_step:g} s")
             done += advanced

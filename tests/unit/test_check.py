@@ -33,11 +33,20 @@ def test_a_run_until_silence_is_announced_with_its_times(bar) -> None:
     assert steps == "100 for 0.01 s, or until all monitors are below 2 % of their peaks for 5 ms, after 14.7 ms"
 
 
-def test_the_estimate_says_what_it_is_without(bar) -> None:
-    law, later = {"material.law": "linearpbond"}, " the additional time of linearpbond once it begins,"
-    for changes, without in ((law, later), ({**law, "material.elastic_start": False}, "")):
-        reported = check(bar(changes))[0]["estimated time"]
-        assert reported.endswith(f" with 1 thread, without building,{without} pictures")
+def test_the_estimate_of_what_may_break_is_a_range(bar) -> None:
+    law = {"material.law": "linearpbond", "run.time_step": 1e-6, "run.duration": 10.0}
+    bonds = {"material.pb_ten": 1e6}
+    for changes, slowest in (
+        ({}, "once contacts open or slide"),
+        ({"material.elastic_start": False}, ""),
+        (bonds, "all broken"),
+        ({"material.elastic_start": False, **bonds}, "all broken"),
+        ({"material.contact_share": 1.0, "material.fric": 0.5}, "all loose"),
+    ):
+        reported = check(bar({**law, **changes}))[0]["estimated time"]
+        assert reported.endswith(f"{slowest} with 1 thread, without building, pictures")
+        assert reported.startswith("about ")
+        assert (" at the pace of the first steps, about " in reported) == bool(slowest)
     reported = check(bar({"static": {"stress": [-1e6, -2e6, 0.0]}}))[0]["estimated time"]
     assert ", without building, pictures; the static stage comes on top: " in reported
 
@@ -46,7 +55,7 @@ def test_a_case_whose_first_steps_blow_up_is_checked_without_an_estimate_of_time
     def advance(self, steps: int) -> None:
         raise RunError("the motion grew without bound")
 
-    monkeypatch.setattr("dembound.check.Simulation.advance", advance)
+    monkeypatch.setattr("dembound.motion.simulation.Simulation.advance", advance)
     facts, warnings = check(bar())
     assert facts["estimated time"] == "unknown, as in the first steps the motion grew without bound"
     assert {"errors", "reduced"} <= set(facts)  # which follow

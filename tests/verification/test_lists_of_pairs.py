@@ -1,4 +1,4 @@
-"""Motion and cracks do not depend, to the bit, on when pairs are listed, nor on how many open ones are.
+"""Motion, cracks and energies do not depend, to the bit, on when pairs are listed, nor on how many open ones are.
 
 A pair that parts forgets its shear, one that meets again has the constants as built, and pairs in rows stay listed. So
 the list needs only to be complete, and a pair that is missing from it would be seen.
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from small_cases import small
 
-from dembound.disks.contacts import contact_list, skins
+from dembound.disks.contacts import relisting, skins
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
@@ -42,27 +42,32 @@ ROCK = HEAP | {
 
 
 def outcome(tables, steps: int, every: int = 0) -> tuple[str, list[list[int]], int]:
-    """A digest of the motion after some steps, broken bonds, and the number of listings; every : more of them."""
+    """A digest of motion and energies after some steps, broken bonds, and how often pairs were listed.
+
+    every : steps after which they are listed in any case; 0: only when they must be.
+    """
     planned, listed = plan(small(tables)), 0
     run = Simulation(planned.scene, planned.time_step)
     for each in planned.kind.trackers(run):
         run.track(each)
-    search = ContactList.search
+    list_anew = ContactList.list_anew
 
     def counted(self, *words):
         nonlocal listed
         listed += 1
-        search(self, *words)
+        list_anew(self, *words)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ContactList, "search", counted)
+        patch.setattr(ContactList, "list_anew", counted)
         for step in [*range(every, steps, every or steps), steps] if every else [steps]:
             run.run(step)
             for pairs in run.system.contacts.values() if every else ():
-                pairs.search(run.state.displacement, run.state.velocity)
+                pairs.list_anew(run.state.u, run.state.v)
     cracks = run.system.take_cracks(steps)
-    motion = np.ascontiguousarray([run.state.displacement, run.state.velocity])
-    return hashlib.sha256(motion.tobytes()).hexdigest(), cracks.pair.tolist(), listed
+    state = run.state
+    motion = np.ascontiguousarray([state.displacement, state.velocity])
+    energy = np.array([*state.work[0], *(each for part in run.system.parts for each in part.stored(state.u))])
+    return hashlib.sha256(motion.tobytes() + energy.tobytes()).hexdigest(), cracks.pair.tolist(), listed
 
 
 @pytest.mark.parametrize(("tables", "steps"), [(HEAP, 1500), (ROCK, 2500)], ids=["heap", "rock"])
@@ -81,7 +86,7 @@ def test_listings_change_no_bit(tables, steps, monkeypatch) -> None:
 
 def test_a_missing_pair_is_seen(monkeypatch) -> None:
     *usual, _ = outcome(HEAP, 1500)
-    found_by = contact_list.near_pairs
-    monkeypatch.setattr(contact_list, "near_pairs", lambda *words: tuple(each[::2] for each in found_by(*words)))
+    found_by = relisting.near_keys
+    monkeypatch.setattr(relisting, "near_keys", lambda *words: found_by(*words)[::2])
     *found, _ = outcome(HEAP, 1500)
     assert found != usual

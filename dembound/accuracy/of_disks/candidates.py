@@ -14,7 +14,6 @@ from typing import Any
 
 from dembound.accuracy.choice import COARSER, OWN, Named, is_valid, label, valid
 from dembound.accuracy.of_disks.arrangements import box_tables, cheapest_box, continuum_beyond, may_be_boxed
-from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import Runner
@@ -26,13 +25,13 @@ from dembound.disks.scene import DiskScene, build
 from dembound.motion.kind import Plan
 from dembound.words import percent
 
-LONGEST, PART = 8.0, 0.2
-"""CPU seconds after which a search ends, or this part of the given run if that is more, as counted: not measured, so
-that it finds the same on every machine."""
+LONGEST, PART = 12.0, 0.2
+"""CPU seconds after which a search for all bounds ends, or this part of the given run if that is more, as counted: not
+measured, so that it finds the same on every machine. Each bound may take what those before have left of its part."""
 
-PER_FACTOR, PER_REFUSED, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.15, 0.02, 0.04, 0.12, 5e-6, 2e-8
-"""CPU seconds of counting the costs of all choices with disks of one diameter, of a choice that cannot run, of building
-one that can, of finding its error, of building it by disk, and of its companions by particle-step."""
+PER_FACTOR, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.2, 0.1, 0.12, 8e-6, 5e-8
+"""CPU seconds of counting the costs of all choices with disks of one diameter, of building a choice, also one that
+cannot run, of finding its error, of building it by disk, and of its companions by particle-step."""
 
 CUT = f"; the search ended early: it may take {LONGEST:g} s, or {percent(PART)} of the run or of --longest"
 """Note on a choice that does not keep a bound, where the search ended for lack of time."""
@@ -51,10 +50,11 @@ class Candidates:
 
     planned : the case; own_cost : CPU time (s) of its steps. kept : keys that do not change. runner : of companions.
     twin : the case under the elastic law, if that replaces its own. longest : CPU time (s) of steps that a choice may
-    have; None: by `COSTLIEST` and `AFFORDABLE`. spent : CPU time of building choices for a bound, as counted, s.
+    have; None: by `COSTLIEST` and `AFFORDABLE`. bounds : their number; begun : of those begun. spent : CPU time, as
+    counted, s. was_cut : whether diameters were left out for lack of it.
     waiting : queue by cost: diameters, their choices, and built choices that cost more than others may. made : built
     choices, and None for those that cannot run, by the text of their case and how much farther away their sides are.
-    counted : factors of the diameter for which the time steps of continua have been found. of_given_disks : the error
+    of_given_disks : the error
     of the given disks.
     """
 
@@ -64,11 +64,13 @@ class Candidates:
     runner: Runner
     twin: ElasticTwin | None = None
     longest: float | None = None
+    bounds: int = 1
     bound: float = 0.0
+    begun: int = 0
     spent: float = 0.0
+    was_cut: bool = False
     waiting: list[tuple[float, int, DiskOption | Built | float]] = field(default_factory=list)
     made: dict[tuple[str, float], Built | None] = field(default_factory=dict)
-    counted: set[float] = field(default_factory=set)
     of_given_disks: float = 0.0
     _options: dict[float, list[DiskOption]] = field(default_factory=dict)
 
@@ -78,19 +80,21 @@ class Candidates:
     def begin(self, bound: float) -> None:
         """Begin with another error bound."""
         self.options.bound = self.bound = bound
-        self.spent, self._options = 0.0, {}
+        self.begun, self.was_cut, self._options = self.begun + 1, False, {}
+
+    @property
+    def most(self) -> float:
+        """CPU seconds that the search may have taken after the present bound."""
+        return max(LONGEST, PART * max(self.own_cost, self.longest or 0.0)) * max(1, self.begun) / self.bounds
 
     def affords(self, item: DiskOption | Built) -> bool:
-        """Whether the search has time left for a choice; choices with companions leave time to those without."""
+        """Whether the search has time left for a choice."""
         option = option_of(item)
         packing = option.case.packing
-        most = max(LONGEST, PART * max(self.own_cost, self.longest or 0.0))
-        spent = self.spent + PER_ERROR
+        spent = self.spent + PER_ERROR + PER_STEP * self.runner.work
         if not isinstance(item, Built):
             spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
-        if sides_of_pair(option.case):
-            spent += PER_STEP * self.runner.work
-        return spent <= most
+        return spent <= self.most
 
     def by_cost(self) -> Iterator[DiskOption | Built]:
         """Choices by cost; choices with the next smaller disks are only counted when their cost has been reached."""
@@ -104,10 +108,13 @@ class Candidates:
             if not isinstance(item, float):
                 yield item
                 continue
-            made = self.of(item)
-            for each in made:
-                self.wait(each.cost, each)
-            least = min((each.cost for each in made), default=least)
+            if item == 1.0 or self.spent + PER_FACTOR <= self.most:
+                made = self.of(item)
+                for each in made:
+                    self.wait(each.cost, each)
+                least = min((each.cost for each in made), default=least)
+            else:
+                self.was_cut = True
             if factors:
                 self.wait(least, factors.pop(0))
 
@@ -127,8 +134,9 @@ class Candidates:
         key = option.case.text, option.wider
         if key not in self.made:
             built = self.options.build(option)
-            disks = 0 if built is None else built.planned.scene.disk_count
-            self.spent += PER_REFUSED if built is None else PER_CHOICE + PER_DISK * disks
+            packing = option.case.packing
+            disks = packing.about(packing.extent) if built is None else built.planned.scene.disk_count
+            self.spent += PER_CHOICE + PER_DISK * disks
             if disks > HELD:
                 return built
             self.made[key] = built
@@ -141,10 +149,8 @@ class Candidates:
             return []
         if factor > 1.0 and self.of_given_disks * factor > self.bound:
             return []
-        if factor not in self.counted:
-            self.counted.add(factor)
-            self.spent += PER_FACTOR
         if factor not in self._options:
+            self.spent += PER_FACTOR
             self._options[factor] = self.options.of(factor)
         return self._options[factor]
 

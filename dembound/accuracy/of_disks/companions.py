@@ -81,6 +81,23 @@ class Companions:
             raise CaseError([f"companions would take {times:.2g} times the work that may be spent on them"])
 
     @property
+    def size(self) -> str:
+        """The sizes of the first companions, in words."""
+        each = dict.fromkeys(f"{scene.disk_count:,} disks × {steps:,} steps" for scene, steps in self._sizes)
+        return " and ".join(each)
+
+    @property
+    def work(self) -> float:
+        """Particle-steps of the first companions."""
+        return float(sum(scene.disk_count * steps for scene, steps in self._sizes))
+
+    @property
+    def _sizes(self) -> list[tuple[DiskScene, int]]:
+        """Scenes of the first companions, and their steps."""
+        scenes = [self.lattice] if self.pair is None else self.pair.scenes
+        return [(scene, math.ceil(self.case.run.duration / self.step)) for scene in scenes]
+
+    @property
     def far(self) -> Motions:
         """The motion of the disks of all patches without reflections of sides, until bonds break."""
         return self._until_break(self._far.motions)

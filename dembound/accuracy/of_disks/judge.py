@@ -11,7 +11,7 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import OWN, Choice, Named
 from dembound.accuracy.judge import Extended, Judge
-from dembound.accuracy.of_disks.candidates import CUT, LONGEST, Candidates, disk_choices
+from dembound.accuracy.of_disks.candidates import CUT, LONGEST, PART, PER_STEP, Candidates, disk_choices
 from dembound.accuracy.of_disks.causes import (
     Formulas,
     causes_of_choice,
@@ -44,7 +44,7 @@ from dembound.motion.endings import monitored
 from dembound.motion.kind import Plan
 from dembound.running.planning import plan
 from dembound.schemas import with_changes
-from dembound.words import percent
+from dembound.words import percent, with_unit
 
 
 def _given(companions: Companions, of: Truth, cost: float, watch: Watch) -> Proposal:
@@ -86,6 +86,19 @@ def _require_known(case: DiskCase) -> None:
         raise CaseError(problems, case.name)
 
 
+def _require_short(companions: Companions, own: float, longest: float | None, watch: Watch) -> None:
+    """Say what companions are run; CaseError if they take longer than the case, a given limit, and `MOST`.
+
+    own, longest : CPU seconds of the case, and of the option.
+    """
+    most, needed = max(MOST, own, longest or 0.0), PER_STEP * companions.work
+    if needed > most:
+        longer = f"more than {with_unit(most, 's', 2)}: --longest {needed:.2g} allows it"
+        raise CaseError([f"companions of {companions.size} take about {with_unit(needed, 's', 2)}, {longer}"])
+    search = with_unit(max(LONGEST, PART * max(own, longest or 0.0)), "s", 2)
+    watch.says(f"runs companions of {companions.size} and others of these sizes, and searches for at most {search}")
+
+
 def _is_reached(planned: Plan[DiskScene]) -> bool:
     """Whether the fastest waves reach any monitor within the run."""
     scene, duration = planned.scene, planned.scene.case.run.duration
@@ -95,6 +108,9 @@ def _is_reached(planned: Plan[DiskScene]) -> bool:
         for source in planned.kind.sources(scene)
     )
 
+
+MOST = 20.0
+"""CPU seconds that the first companions of advice may take, as counted, if that is more than the case takes."""
 
 REALISATIONS = (
     "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
@@ -164,6 +180,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         runner, reflections = Runner(shown=watch.run), Reflections(watch.begins)
         companions = Companions(case, planned.scene, planned.time_step, most, runner, reflections)
         try:
+            _require_short(companions, planned_cost(planned).seconds, longest, watch)
             moved = [own.values["velocity"] for own in companions.recorded(companions.scene).values()]
         except CaseError as error:
             what = f"advise: the same with disks of {companions.diameter:.4g} m, which it has to run, is refused"
@@ -178,11 +195,14 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
             watch.best(bounds[0], given)
             return Advice(shown, {bounds[0]: given}, 1)
-        searches = [Search(companions, Candidates(planned, kept, given.cost, runner, longest=longest), of, kept, watch)]
+        candidates = Candidates(planned, kept, given.cost, runner, None, longest, len(bounds))
+        searches = [Search(companions, candidates, of, kept, watch)]
         searches[0].know(given.budget)
         if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
             own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
-            candidates = Candidates(twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest)
+            candidates = Candidates(
+                twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest, len(bounds)
+            )
             searches.insert(0, Search(own, candidates, of, kept, watch))
         best = {}
         for number, bound in enumerate(sorted(bounds, reverse=True)):

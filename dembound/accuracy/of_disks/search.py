@@ -100,6 +100,7 @@ class Search:
     of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
     of_disks: dict[tuple[float, float, bool], float] = field(default_factory=dict)
     known: dict[str, list[_Found]] = field(default_factory=dict)
+    _walls: dict[tuple[str, float], float] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def twin(self) -> ElasticTwin | None:
@@ -192,7 +193,7 @@ class Search:
                 too_long.append(item)
             elif (built := self.candidates.built(item)) is not None:
                 found += self._with_error(built, None)
-        self.was_cut = bool(too_long)
+        self.was_cut = bool(too_long) or self.candidates.was_cut
         for item in sorted(too_long, key=lambda each: each.cost):
             if not found and (built := self.candidates.built(item)) is not None:
                 found += self._with_error(built, None)
@@ -205,14 +206,17 @@ class Search:
     def _alone(self, item: DiskOption | Built) -> float:
         """The largest known single error of a choice: of its sides, its disks, or walls."""
         option = option_of(item)
-        case = option.case
-        walls = 0.0
-        if self.of == "rock":
-            ground, diameter = self.companions.scene.ground, 2.0 * case.packing.radius
-            places = [np.array(monitor.position) for monitor in case.monitor]
-            errors = [wall_errors(case, ground, diameter, place) for place in places]
-            walls = WALL_FACTOR * max((size for each in errors for size in each.values()), default=0.0)
+        walls = self._walls_of(option) if self.of == "rock" else 0.0
         return max(self.of_sides.get(_sides(option), 0.0), self.of_disks.get(_disks(option), 0.0), walls)
+
+    def _walls_of(self, option: DiskOption) -> float:
+        """The largest error by walls of holes, found once: choices are sorted by it again and again."""
+        case, key = option.case, (option.arrangement, option.factor)
+        if key not in self._walls:
+            ground, diameter = self.companions.scene.ground, 2.0 * case.packing.radius
+            errors = [wall_errors(case, ground, diameter, np.array(monitor.position)) for monitor in case.monitor]
+            self._walls[key] = WALL_FACTOR * max((size for each in errors for size in each.values()), default=0.0)
+        return self._walls[key]
 
     def _keeps(self, error: float) -> bool:
         """Whether an error is within the bound."""

@@ -6,34 +6,27 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.contacts.dashpots import Dashpots
-from dembound.disks.contacts.pair_list import NO_LIMITS, PairList, near_pairs
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, bonds_of
+from dembound.disks.contacts.pairs import bonds_of, push_at_rest
+from dembound.disks.contacts.placing import ContactHistory, Pairs
+from dembound.disks.contacts.relisting import HISTORY, RenewedList
 from dembound.disks.contacts.row_plan import RowPlan
-from dembound.disks.contacts.skins import SKIN, cell_of, skins_of
+from dembound.disks.contacts.skins import SKIN
 from dembound.disks.material.at_rest import StressAtRest, stressed
-from dembound.disks.material.constants import BondFactors, brick_constants, limits_of, shared_constants
+from dembound.disks.material.constants import BondFactors, brick_constants, limits_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
-from dembound.kernels.common import CHUNKS
-from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
-from dembound.kernels.near import numbers_of, room
+from dembound.kernels.contacts import REFERENCE, SHEAR, TENSION
 from dembound.laws.law import Limits
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
 
-_HISTORY = ("state", "shear", "slip", "closed", "cracked", "kept")
-"""The arrays of the pairs' history variables, in the order of `ContactHistory`."""
-
-GRAIN = 1e-12
-"""To which share of the mean diameter places of near pairs are rounded, so that copies of a pair share a row."""
-
-_KEPT = ("first", "second", "contact_type", *_HISTORY)
+_KEPT = ("first", "second", "contact_type", *HISTORY)
 """The arrays of the pairs, besides their forces, that saved_arrays() returns."""
 
 
-class ContactList(PairList):
+class ContactList(RenewedList):
     """All pairs of a part that are in contact or may soon be, with their history.
 
     Displacements (3, n) are those of all nodes of the scene.
@@ -92,6 +85,7 @@ class ContactList(PairList):
         self.skin = SKIN * ground.brick.mean_diameter
         self.time_step = 0.0
         self._set_origin(np.zeros((2, len(assembly.radii))), np.full(len(assembly.radii), 0.5 * self.skin))
+        self._left_out = 0
         self.keeps_slip = False
         constants = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         if layers is not None:
@@ -102,27 +96,32 @@ class ContactList(PairList):
         self._built = pairs
         bonded = bonds_of(self.ground.law, self.bonds, self.kind)
         zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
+        closed = np.full_like(none, kernel.CLOSED)
         self.own_types = len(self.bonds)
         self._constants = self.bonds
         slip = self._begun_slip[self.kind]
         self._intact = np.zeros(len(assembly.radii), dtype=np.bool_) if intact is None else intact
         self._list(
-            pairs, ContactHistory(bonded, zero, slip, none, np.full(len(first), -1), self._kept(first, second, none))
+            pairs, ContactHistory(bonded, zero, slip, closed, np.full(len(first), -1), self._kept(first, second, none))
         )
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
         self._cracks: list[Cracks] = []
-        self._held = held
+        self._built_keys = self._keys_of(first, second, pairs.image)
+        self._built_order = np.argsort(self._built_keys)
+        self._held = np.zeros(0, dtype=np.int64)
+        if held is not None:
+            self._held = np.sort(self._keys_of(held[0], held[1], self.images(*held)))
         self.retired = np.zeros(len(assembly.radii), dtype=np.bool_)
         if self.searches:
             self.search(np.zeros((3, len(self.layout.slot))))
         if plan is not None:
-            self.bonds = self._constants  # near pairs of the start are the same in all copies, as contacts are
-            first, second = self.pairs
-            pairs = Pairs(first, second, self.image, self.of("contact_type"))
-            self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, ContactHistory(*(self.of(name) for name in _HISTORY)))
+            pairs, history = self._all()
+            # near pairs of the start are the same in all copies, as contacts are
+            self.bonds = self._constants = self._constants[: max(self.own_types, int(pairs.contact_type.max()) + 1)]
+            self._plan = PairPlan.of(pairs.first, pairs.second, pairs.contact_type, len(self.bonds), *plan)
+            self._list(pairs, history)
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n).
@@ -149,8 +148,7 @@ class ContactList(PairList):
         elastic = self.limits._replace(geometry=REFERENCE, **endless)
         limits = elastic if reference else self.limits
         u = self.spread(displacement)
-        still = np.zeros_like(u)
-        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 4)), 0) > 0:
+        if push_at_rest(u, self.arrays, limits) > 0:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
@@ -159,108 +157,11 @@ class ContactList(PairList):
         kernel.sum_forces(self.arrays, force)
         total[:, self.nodes] += force[:, self._slot]
 
-    def is_old(self, displacement: np.ndarray) -> bool:
-        """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
-        u = self.spread(displacement)
-        return bool(room(u, self._slots.start, self.origin, self.skins, self.cells) < 0.0)
-
-    def search(self, displacement: np.ndarray, velocity: np.ndarray | None = None) -> None:
-        """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond.
-
-        velocity : (3, n) m/s, by which fast particles get wider skins; None: all have the same.
-        """
-        self.note_cracks()
-        moved = displacement[:2, self.nodes].T
-        if not np.isfinite(moved).all():
-            return  # the `Watch` of the run raises the error
-        skins = np.full(len(self.assembly.radii), 0.5 * self.skin)
-        if velocity is not None:
-            cell = cell_of(self.cells)[self._slot - self._slots.start]
-            way = self.time_step * velocity[:2, self.nodes]
-            skins = skins_of(way, cell, self.ground.brick.mean_diameter)
-        kept = self._remaining(moved, skins)
-        # rows of earlier searches that are still in use are moved up to follow those of the brick
-        own = len(self.bonds)
-        used, row = np.unique(self.of("contact_type")[kept], return_inverse=True)
-        extra = used >= own
-        place = used.astype(np.int64)
-        place[extra] = own + np.arange(np.count_nonzero(extra))
-        met, constants = self._met(moved, kept, skins, own + int(np.count_nonzero(extra)))
-        self._constants = np.vstack([self.bonds, self._constants[used[extra]], constants])
-        first, second = self.pairs
-        pairs = Pairs(
-            np.concatenate([first[kept], met.first]),
-            np.concatenate([second[kept], met.second]),
-            np.concatenate([self.image[kept], met.image]),
-            np.concatenate([place[row], met.contact_type]),
-        )
-        del first, second, row
-        history = ContactHistory(
-            np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
-            np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
-            np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
-            np.concatenate([self.of("closed")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
-            np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
-            np.concatenate([self.of("kept")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
-            drag=self._drag_of(kept, len(met.first)),
-        )
-        self._list(pairs, history)
-        self._set_origin(displacement[:2, self.nodes], skins)
-
     def _kept(self, first: np.ndarray, second: np.ndarray, kept: np.ndarray) -> np.ndarray:
         """Whether the bonds between particles (b,) may break, (b,) uint8, if it was kept (b,) before."""
         return np.maximum(
             kept, np.where(self._intact[first] | self._intact[second], kernel.KEPT, kernel.MAY_BREAK)
         ).astype(np.uint8)
-
-    def _drag_of(self, kept: np.ndarray, more: int) -> np.ndarray | None:
-        """Last forces of the dashpots of the pairs kept (b,) bool, and of more pairs without any; None: no dashpots."""
-        return None if self.dashpots is None else np.vstack([self.drag[self.live][kept], np.zeros((more, 2))])
-
-    def _remaining(self, moved: np.ndarray, skins: np.ndarray) -> np.ndarray:
-        """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones.
-
-        skins : (m,) m.
-        """
-        radii, (first, second) = self.assembly.radii, self.pairs
-        vectors = moved[second] - moved[first] + self._constants[self.of("contact_type"), :2]
-        near = np.hypot(*vectors.T) - radii[first] - radii[second] <= skins[first] + skins[second]
-        kept = (self.of("state") == INTACT) | near
-        if self._held is not None:
-            kept[self.find(*self._held)[1]] = True
-        kept[: self._in_rows] = True  # their places are there in any case
-        return kept & ~(self.retired[first] | self.retired[second])
-
-    def _met(self, moved: np.ndarray, kept: np.ndarray, skins: np.ndarray, types: int) -> tuple[Pairs, np.ndarray]:
-        """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m, of skins (m,) m.
-
-        Their types, from number `types` on, are rows of constants, in layered ground with four limits, which are
-        returned too; contacts of the brick that had parted have theirs.
-        """
-        positions, radii = self.assembly.positions, self.assembly.radii
-        near, image = near_pairs(positions + moved, radii, skins, self.periods)
-        first, second = (particles[kept] for particles in self.pairs)
-        fresh = numbers_of(near, image, first, second, self.image[kept], len(radii)) < 0
-        fresh &= ~self.retired[near].any(axis=1)
-        near, image, built = near[fresh], image[fresh], self._built
-        at = numbers_of(near, image, built.first, built.second, built.image, len(radii))
-        back = Pairs(**{name: each[at[at >= 0]] for name, each in vars(built).items()})
-        (first, second), image = near[at < 0].T, image[at < 0]
-        vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
-        unit = GRAIN * self.ground.brick.mean_diameter
-        vectors = np.round(vectors / unit) * unit  # alike in copies of a brick, whatever other pairs there are
-        zone = self.ground.zone_of(positions[:, 1])
-        zones = zone[first], zone[second]
-        both_radii, locked_in = (radii[first], radii[second]), self.locked_in
-        constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
-        if self._friction is not None:
-            limits = np.repeat(NO_LIMITS, len(first), axis=0)
-            limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
-            constants = np.column_stack([constants, limits])
-        constants, row_of = shared_constants(constants, np.column_stack(zones), self.ground.law.width)
-        met = Pairs(first, second, image, types + row_of)
-        both = {name: np.concatenate([each, getattr(met, name)]) for name, each in vars(back).items()}
-        return Pairs(**both), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
@@ -273,7 +174,7 @@ class ContactList(PairList):
         self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
         pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
-        history = ContactHistory(*(other.of(name)[left] for name in (*_HISTORY, "place")))
+        history = ContactHistory(*(other.of(name)[left] for name in (*HISTORY, "place")))
         self._list(pairs, history._replace(kept=self._kept(first, second, other.of("kept")[left])))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
@@ -294,21 +195,6 @@ class ContactList(PairList):
         pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
         self.note_cracks()
 
-    def note_cracks(self) -> None:
-        """Record the bonds that broke since the last call, with their positions."""
-        if not (self.arrays.cracked >= 0).any():
-            return
-        cracked, state = self.of("cracked"), self.of("state")
-        broken = np.flatnonzero(cracked >= 0)
-        first, second = (particles[broken] for particles in self.pairs)
-        order = np.lexsort((second, first, cracked[broken]))
-        broken, first, second = broken[order], first[order], second[order]
-        half = 0.5 * self._constants[self.of("contact_type")[broken], :2]
-        middle = self.assembly.positions[first] + half + self.of("place")[broken]
-        both = np.column_stack([first, second]) + self.nodes.start
-        self._cracks.append(Cracks(cracked[broken], both, middle, state[broken] == SHEAR))
-        self.arrays.cracked[:] = -1
-
     def take_cracks(self) -> Cracks:
         """The bonds that broke since the last call."""
         self.note_cracks()
@@ -322,7 +208,7 @@ class ContactList(PairList):
         saved |= {"image": self.image, "constants": self._constants}
         saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
-            saved["drag"] = self.drag[self.live]
+            saved["drag"] = self.drag
         saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
@@ -342,6 +228,8 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        self._list(pairs, ContactHistory(**{name: saved[name] for name in _HISTORY}, drag=saved.get("drag")))
-        self.arrays.force[:, self.live] = saved["force"].T
+        history = ContactHistory(**{name: saved[name] for name in HISTORY}, drag=saved.get("drag"))
+        pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
+        closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
+        self._list(pairs, history._replace(closed=closed, force=saved["force"]))
         self._cracks = [Cracks(*(saved[f"crack_{field.name}"] for field in fields(Cracks)))]

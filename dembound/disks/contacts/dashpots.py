@@ -29,11 +29,13 @@ class Dashpots:
         return cls(material.dp_nratio, material.dp_sratio, mass, own) if material.has_dashpots else None
 
     def at(self, contacts: Contacts) -> np.ndarray:
-        """Viscosities (b, 2) N·s/m in all places of contacts, 0 where there is none."""
-        one, other = self.mass[contacts.first], self.mass[contacts.second]
-        springs = self.law.dashpot_springs(contacts.constants)[contacts.contact_type]
-        ratios = np.array([self.normal, self.shear])
-        return np.ascontiguousarray(viscosity(ratios, springs, one[:, None], other[:, None]))
+        """Viscosities (2, b) N·s/m in all places of contacts, 0 where there is none."""
+        return self.between(contacts.first, contacts.second, contacts.constants[contacts.contact_type])
+
+    def between(self, first: np.ndarray, second: np.ndarray, constants: np.ndarray) -> np.ndarray:
+        """Viscosities (2, b) N·s/m of contacts of disks in slots (b,), with their constants (b, c)."""
+        springs = np.ascontiguousarray(self.law.dashpot_springs(constants).T)
+        return viscosity(np.array([[self.normal], [self.shear]]), springs, self.mass[first], self.mass[second])
 
 
 def viscosity(

@@ -4,11 +4,12 @@ import numpy as np
 
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_rows import PairPlan
-from dembound.disks.contacts.pairs import ContactHistory, Pairs, acting, in_places
+from dembound.disks.contacts.pairs import acting
+from dembound.disks.contacts.placing import ContactHistory, Pairs, in_places
 from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.kernels import near
-from dembound.kernels.contacts import INTACT, REACHED
+from dembound.kernels.contacts import REACHED
+from dembound.kernels.listing import keys_of, sorted_into
 from dembound.kernels.tables.contacts import Cells, PairRows
 from dembound.laws.law import Limits, in_columns
 from dembound.motion.state import Layout, aligned_zeros
@@ -22,41 +23,22 @@ In wider cells disks move apart more, in narrower ones disks of cells that do no
 """
 
 
-def near_pairs(
-    positions: np.ndarray, radii: np.ndarray, skins: np.ndarray, periods: tuple[float | None, float | None]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (b, 2) of disks with gaps up to the sum of their skins, and the periods (b, 2) between them, each once.
-
-    positions (n, 2), radii (n,), skins (n,) in m. Particles may have moved out of the period, as only differences of
-    positions are used. Periods between a pair are never negative along x, nor along y alone.
-    """
-    lengths = np.array([length or 0.0 for length in periods])
-    pairs, images = near.near_pairs(np.ascontiguousarray(positions), radii + skins, 0.0, lengths)
-    turned = (images[:, 0] < 0) | ((images[:, 0] == 0) & (images[:, 1] < 0))
-    pairs[turned] = pairs[turned, ::-1]
-    images[turned] *= -1
-    return pairs, images
-
-
 @np.errstate(over="ignore", invalid="ignore")  # of motion without bound, which ends the run
 def cells_of(
     positions: np.ndarray, radii: np.ndarray, numbers: np.ndarray, periods: tuple[float | None, float | None]
 ) -> Cells:
     """Cells of disks at positions (n, 2) m with radii (n,) m, by their numbers (n,) in kernels."""
-    low, diameter = positions.min(axis=0), 2.0 * float(radii.max())
+    low, diameter = np.array([x.min() for x in positions.T]), 2.0 * float(radii.max())  # faster than along an axis
     wraps = np.array([length is not None for length in periods])
     extent = np.array([np.ptp(x) if length is None else length for x, length in zip(positions.T, periods, strict=True)])
     side = max(CELL * diameter, float(np.sqrt(extent.prod() / len(radii))))  # not many more cells than disks
     count = np.clip(np.floor(extent / side), 1, len(radii)).astype(np.int64)
     width = np.where(extent > 0.0, extent / count, 1.0)
-    place = np.floor((positions - low) / width).astype(np.int64)
-    place = np.where(wraps, place % count, np.clip(place, 0, count - 1))
-    cell = place[:, 1] * count[0] + place[:, 0]
-    start = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=count.prod()))])
+    start, member = sorted_into(positions, low, width, count, wraps, numbers)
     # between cells that do not touch there is at least one cell
     split = count > np.where(wraps, 3, 2)
     reach = 0.5 * (float(width[split].min()) - diameter) if split.any() else np.inf
-    return Cells(start, numbers[np.argsort(cell, kind="stable")], count, wraps, reach)
+    return Cells(start, member, count, wraps, reach)
 
 
 NO_LIMITS = np.array([[0.0, np.inf, np.inf, 0.0]])
@@ -73,7 +55,8 @@ class PairList:
     Attributes
     ----------
     arrays : the pairs for the kernels, by slots. In rows of copies some places hold no pair; these have no stiffness.
-    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` contain only these.
+    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` contain only these. Other
+    places have no stiffness.
     rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
         the disks (k,) with ends of other pairs, offsets (k + 1,) of each one's ends, and these ends (e,); extra :
         (3, slots) work space of the kernels.
@@ -83,8 +66,7 @@ class PairList:
     ground : whose law says how many constants of it a pair has.
     bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
-    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. With dashpots, viscosity
-    (places, 2) and drag (places, 2), see `kernels.tables.Dashed`.
+    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     """
 
     ground: PackedMaterial
@@ -92,10 +74,9 @@ class PairList:
     own_types: int
     factors: BondFactors | None
     dashpots: Dashpots | None
-    viscosity: np.ndarray
-    drag: np.ndarray
     bonds: np.ndarray
     _constants: np.ndarray
+    _sorted: np.ndarray
 
     def __init__(
         self, assembly: Assembly, periods: tuple[float | None, float | None], begin: int, layout: Layout | None
@@ -106,7 +87,9 @@ class PairList:
         self.layout = Layout.plain(self.nodes.stop) if layout is None else layout
         self._slot = self.layout.slot[self.nodes]
         self._slots = slice(int(self._slot.min()), int(self._slot.max()) + 1)
+        self._ranks = np.argsort(self._slot)  # particles by their slots
         self._plan: PairPlan | None = None
+        self._sorted_for: np.ndarray | None = None
         self.rows: PairRows | None = None
 
     def spread(self, displacement: np.ndarray) -> np.ndarray:
@@ -122,6 +105,11 @@ class PairList:
     def of(self, name: str) -> np.ndarray:
         """A column of `arrays` for the live pairs, (b,) or (b, …)."""
         return getattr(self.arrays, name)[self.live]
+
+    @property
+    def image(self) -> np.ndarray:
+        """Whole periods (b, 2) int8 between the particles of every pair."""
+        return self._images[self.live]
 
     @property
     def force(self) -> np.ndarray:
@@ -140,14 +128,11 @@ class PairList:
 
         Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
         """
-        pairs, images = np.stack([first, second], axis=1), self.images(first, second, vectors)
-        at = near.numbers_of(pairs, images, *self.pairs, self.image, len(self.assembly.radii))
-        return at >= 0, at
-
-    def _counted(self, chosen: np.ndarray) -> np.ndarray:
-        """Number (m,) of the chosen pairs (b,) that each particle has."""
-        ends = np.concatenate([particles[chosen] for particles in self.pairs])
-        return np.bincount(ends, minlength=len(self.assembly.radii))
+        keys, _ = keys_of(self._slot[first], self._slot[second], self.images(first, second, vectors), self._slots.stop)
+        at = np.searchsorted(self._keys, keys, sorter=self._by_key)
+        at = self._by_key[np.minimum(at, len(self._keys) - 1)] if len(self._keys) > 0 else np.full(len(keys), -1)
+        listed = (at >= 0) & (self._keys[at] == keys) if len(self._keys) > 0 else at >= 0
+        return listed, np.where(listed, at, -1)
 
     def reached(self) -> tuple[np.ndarray, np.ndarray]:
         """First and second particle (b,) of the bonds that have reached their strength, but never break."""
@@ -158,17 +143,11 @@ class PairList:
         first, second = self.pairs
         return first[own], second[own]
 
-    def freshly_torn(self) -> np.ndarray:
-        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
-        return self._counted(self.of("cracked") >= 0) > 0
-
-    def bonds_left(self) -> np.ndarray:
-        """Number (m,) of intact bonds of every particle."""
-        return self._counted(self.of("state") == INTACT)
-
     def coordination(self, geometry: int) -> np.ndarray:
         """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
-        return self._counted(acting(self.arrays, geometry)[self.live])
+        chosen = acting(self.arrays, geometry)[self.live]
+        ends = np.concatenate([particles[chosen] for particles in self.pairs])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
 
     def _set_origin(self, displacement: np.ndarray, skins: np.ndarray) -> None:
         """Store the displacements (2, m) m from which later motion is counted, and the skins (m,) m of particles."""
@@ -179,30 +158,54 @@ class PairList:
         self.skins[slot] = skins
         self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
 
-    def _list(self, pairs: Pairs, history: ContactHistory) -> None:
-        """Give the pairs their places, and list the contact ends of each particle."""
+    def _list(self, pairs: Pairs, history: ContactHistory, room: int = 0) -> None:
+        """Give the pairs their places, with room for so many in no row, and list their contact ends."""
         constants, columns = np.split(self._constants, [self.ground.law.width + STRAIN], axis=1)
         if columns.size > 0:
             columns = np.vstack([columns, NO_LIMITS])  # of places without a pair
             self.limits = in_columns(columns, self.limits.geometry)
-        placed = in_places(pairs, history, self._slot, constants, self._plan)
-        self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
-        self._in_rows = len(placed.in_rows)
+        placed = in_places(pairs, history, self._slot, constants, self._plan, room)
+        self.arrays, self.live, self._in_rows = placed.arrays, placed.live, placed.in_rows
+        self._images = placed.images
+        self._keys = placed.keys
+        self._row_keys = np.sort(self._keys[: self._in_rows])
         if self.factors is not None:
             self.limits = self.limits._replace(factor=self._factors(self.factors))
         if self.dashpots is not None:
-            self.viscosity = self.dashpots.at(self.arrays)
-            self.drag = placed.drag if len(placed.drag) > 0 else np.zeros_like(self.viscosity)
+            viscosity = self.dashpots.at(self.arrays)
+            drag = self.arrays.drag if history.drag is not None else np.zeros_like(viscosity)
+            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag)
         if self._plan is not None:
-            assert placed.strays is not None
-            self.rows, self.strays = self._plan.rows(placed.in_rows, constants), placed.strays
+            self.rows = self._plan.rows(self.live[: self._in_rows], constants)
             self.extra = aligned_zeros(3, self.layout.count)
+        self._note_strays()
+
+    @property
+    def _by_key(self) -> np.ndarray:
+        """The order (b,) of the pairs by their keys, made when it is needed."""
+        if self._sorted_for is not self._keys:
+            self._sorted_for, self._sorted = self._keys, np.argsort(self._keys, kind="stable")
+        return self._sorted
+
+    def _note_strays(self) -> None:
+        """Find the disks with ends of pairs in no row, beside rows of copies."""
+        if self._plan is not None:
+            slots = np.flatnonzero(np.diff(self.arrays.start))
+            self.strays = (
+                slots,
+                np.append(self.arrays.start[slots], len(self.arrays.end)).astype(np.int64),
+                self.arrays.end,
+            )
 
     def _factors(self, factors: BondFactors) -> np.ndarray:
         """Factors of the strengths of the bonds in all places of `arrays`, 1 where there is none."""
-        bonded = np.flatnonzero(self.arrays.contact_type < self.own_types)
         found = aligned_zeros(len(self.arrays.contact_type))
-        found[:] = 1.0
-        first = self.layout.node[self.arrays.first[bonded]] - self.nodes.start
-        found[bonded] = factors.at(first, self.arrays.contact_type[bonded])
+        first = self.layout.node[self.arrays.first] - self.nodes.start
+        found[:] = self._factors_of(factors, first, self.arrays.contact_type)
+        return found
+
+    def _factors_of(self, factors: BondFactors, first: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
+        """Factors (b,) of the strengths of pairs of first particles (b,); 1 for those that were not built."""
+        found, bonded = np.ones(len(first)), np.flatnonzero(contact_type < self.own_types)
+        found[bonded] = factors.at(first[bonded], contact_type[bonded])
         return found

@@ -1,25 +1,23 @@
-"""Pairs of disks as arrays for the kernels, the forces across them, and the first bonds that break."""
+"""Forces across pairs of disks, the pairs of the elastic law, and the first bonds that break."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from dembound.disks.contacts.pair_rows import PairPlan
+from dembound.disks.contacts.placing import NO_DASHPOTS
 from dembound.disks.material.at_rest import StressAtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.start_strain import began_of
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SLID, push
-from dembound.kernels.near import ends_of
+from dembound.kernels.contacts import BONDED, INTACT, LOST, NONE, REFERENCE, SLID, push_each
+from dembound.kernels.single_pairs import push
 from dembound.kernels.tables.contacts import Contacts
 from dembound.laws import Law
 from dembound.laws.law import Limits
 from dembound.motion.kind import Finding
-from dembound.motion.state import Layout, aligned_zeros
+from dembound.motion.state import Layout
 from dembound.motion.trackers import Run
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import P, of_law
@@ -136,8 +134,22 @@ def _pushed(contacts: Contacts, u: np.ndarray, *, slid: bool) -> Contacts:
         cracked=np.full(count, -1),
         force=np.empty((4, count)),
     )
-    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 4)), 0)  # zero step: at rest
+    push_at_rest(u, copies, UNYIELDING)
     return copies
+
+
+def push_at_rest(u: np.ndarray, contacts: Contacts, limits: Any) -> int:
+    """Compute the forces of all pairs at displacements u (3, slots) at rest; returns the number of bonds that broke.
+
+    Those of pairs in no row are the same bits as in a run, so that what balances them leaves a body at rest.
+    """
+    still, undamped, lost = np.zeros_like(u), contacts._replace(**NO_DASHPOTS), np.zeros((CHUNKS, LOST))
+    reference = limits.geometry == REFERENCE
+    if not reference:
+        push(u, still, 0.0, 0, undamped, limits, lost)
+    others = np.arange(len(contacts.first) if reference else contacts.bound[0], dtype=np.uint32)
+    push_each(others, u, still, 0.0, 0, undamped, limits, lost[0])
+    return int(lost[:, 3].sum())
 
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
@@ -163,123 +175,6 @@ def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
         BREAK_X: Finding(float(x), "m"),
         BREAK_Y: Finding(float(y), "m"),
     }
-
-
-NOTHING = np.array([1e6, 0.0, 1e6, -1e100, 0.0])
-"""Where a place without a pair is: far apart. The other constants there are 0."""
-
-
-@dataclass(frozen=True)
-class Pairs:
-    """Pairs: first, second (b,) particles, image (b, 2) int8 whole periods between them, contact_type (b,)."""
-
-    first: np.ndarray
-    second: np.ndarray
-    image: np.ndarray
-    contact_type: np.ndarray
-
-
-class ContactHistory(NamedTuple):
-    """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
-
-    kept : None where all bonds may break.
-
-    drag (b, 2), see `Dashed`; None without dashpots, or before they have acted.
-    """
-
-    state: np.ndarray
-    shear: np.ndarray
-    slip: np.ndarray
-    closed: np.ndarray
-    cracked: np.ndarray
-    kept: np.ndarray | None = None
-    place: np.ndarray | None = None
-    drag: np.ndarray | None = None
-
-
-class Placed(NamedTuple):
-    """Pairs in their places.
-
-    arrays, live, image : see `ContactList`. in_rows : (k,) places of pairs in rows of copies, ascending. strays : the
-    contact ends of all other pairs, see `PairList`; None without rows. drag : (places, 2) N, or (0, 2).
-    """
-
-    arrays: Contacts
-    live: np.ndarray
-    image: np.ndarray
-    in_rows: np.ndarray
-    strays: tuple[np.ndarray, np.ndarray, np.ndarray] | None
-    drag: np.ndarray
-
-
-def in_places(
-    pairs: Pairs, history: ContactHistory, slot: np.ndarray, constants: np.ndarray, plan: PairPlan | None
-) -> Placed:
-    """Assign places to pairs, and list the contact ends of each particle.
-
-    slot : (m,) of each particle. constants : (p, 15) of the types of contacts. plan : rows of copies, whose places come
-    first; None: there are none.
-    """
-    first, second = (slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
-    in_rows = np.full(len(first), -1)
-    if plan is not None:
-        in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
-    keys = (
-        (first.astype(np.int64) * (int(slot.max()) + 1) + second) * 9 + 3 * (pairs.image[:, 0] + 1) + pairs.image[:, 1]
-    )
-    order = np.argsort(np.where(in_rows >= 0, in_rows - len(slot) * 2**32, keys), kind="stable")
-    first, second, in_rows = first[order], second[order], in_rows[order]
-    places = 0 if plan is None else plan.count
-    shared = int(np.count_nonzero(in_rows >= 0))
-    live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
-    if plan is not None:  # the last type is that of places without a pair
-        nothing = np.pad(NOTHING, (0, constants.shape[1] - len(NOTHING)))
-        constants = np.vstack([constants, nothing])
-    count, begin, stop = places + len(order) - shared, int(slot.min()), int(slot.max()) + 1
-    if plan is not None:
-        count = -(-count // LANES) * LANES  # each row of forces is aligned
-    start, end = ends_of(first, second, live, begin, stop)
-
-    def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
-        """Values of the pairs in their places."""
-        column = aligned_zeros(count, *values.shape[1:], dtype=values.dtype)
-        column[...] = empty
-        column[live] = values
-        return column
-
-    arrays = Contacts(
-        begin=begin,
-        first=placed(first.astype(np.uint32), int(slot[0])),
-        second=placed(second.astype(np.uint32), int(slot[0])),
-        contact_type=placed(pairs.contact_type[order].astype(np.uint32), max(0, len(constants) - 1)),
-        constants=of_law(constants),
-        began=began_of(constants),
-        state=placed(history.state[order], NONE),
-        shear=placed(history.shear[order]),
-        slip=placed(history.slip[order]),
-        closed=placed(history.closed[order]),
-        cracked=placed(history.cracked[order], -1),
-        place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
-        kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
-        force=aligned_zeros(4, count),
-        start=start,
-        end=end,
-    )
-    strays = None if plan is None else _ends_apart(start, end, 2 * places)
-    drag = np.zeros((0, 2)) if history.drag is None else placed(history.drag[order])
-    return Placed(arrays, live, pairs.image[order], in_rows[:shared], strays, drag)
-
-
-def _ends_apart(start: np.ndarray, end: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Owners (k,) of ends (e,) from number `first` on, the offsets (k + 1,) of each owner's ends, and these ends.
-
-    start : offsets of the ends of all owners.
-    """
-    others = end >= first
-    owner = np.repeat(np.arange(len(start) - 1), np.diff(start).astype(np.int64))[others]
-    counts = np.bincount(owner, minlength=len(start) - 1)
-    slot = np.flatnonzero(counts)
-    return slot, np.append(0, np.cumsum(counts[slot])), end[others]
 
 
 def plain_contacts(
@@ -308,8 +203,10 @@ def plain_contacts(
         place=np.zeros((0, 2)),
         kept=np.zeros(0, dtype=np.uint8),
         force=np.zeros((4, 0)),
+        **NO_DASHPOTS,
         start=first[:0],
         end=first[:0],
+        bound=np.linspace(0, len(first), CHUNKS + 1).astype(np.int64),
     )
 
 

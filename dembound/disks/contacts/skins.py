@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from dembound.kernels.listing import ahead_of_others
 from dembound.kernels.tables.contacts import Cells
 
-SKIN, MOVING = 0.05, 0.12
+SKIN, MOVING = 0.05, 0.25
 """Skins of two disks together over the mean diameter: at the start, and once disks move."""
 
 AHEAD = 20.0
@@ -14,26 +15,15 @@ SLOW = 0.7
 """Share of its skin that a disk may move in so many steps and not count as fast."""
 
 WIDEST = 0.5
-"""Largest skin over the mean diameter: wider ones make the cells of the search too wide."""
+"""Largest skin over the mean diameter."""
 
 
-def cell_of(cells: Cells) -> np.ndarray:
-    """Number of the cell of each of the disks (n,)."""
-    found = np.zeros(int(cells.member.max(initial=-1)) + 1, dtype=np.int64)
-    found[cells.member] = np.repeat(np.arange(len(cells.start) - 1), np.diff(cells.start))
-    return found
+def skins_of(velocity: np.ndarray, begin: int, cells: Cells, time_step: float, diameter: float) -> np.ndarray:
+    """Skins (slots,) m of disks: wider for those faster than others in their cell.
 
-
-def skins_of(way: np.ndarray, cell: np.ndarray, diameter: float) -> np.ndarray:
-    """Skins (m,) m of disks that move by way (2, m) m in a step: wider for those faster than others in their cell.
-
-    cell : (m,) numbers; diameter : m, the mean one.
+    velocity : (3, …) m/s, those of the disks from slot `begin` on; diameter : m, the mean one.
     """
-    base, usual = 0.5 * MOVING * diameter, np.ones(len(cell))
-    for _ in range(2):  # the second mean is without the fast ones
-        weight = np.maximum(np.bincount(cell, usual), 1e-300)
-        mean = np.array([np.bincount(cell, usual * each) / weight for each in way])
-        ahead = AHEAD * np.hypot(*(way - mean[:, cell]))
-        usual = (ahead <= np.median(ahead) + base).astype(float)
+    base = 0.5 * MOVING * diameter
+    ahead = ahead_of_others(velocity, begin, cells, AHEAD * time_step, base)
     found: np.ndarray = np.minimum(base + np.maximum(ahead - SLOW * base, 0.0), WIDEST * diameter)
     return found

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from dembound.disks.material.kept import Kept
 from dembound.errors import CaseError
 from dembound.laws import Stiffness
 from dembound.packings.brick import Brick
@@ -138,6 +139,15 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> Hom
 
     Raises CaseError when disks can move without resistance, as without bonds and friction.
     """
+    arrays = brick.size, brick.positions, brick.radii, brick.pairs, brick.images, *vars(stiffness).values()
+    return _FOUND.get(lambda: _homogenised(brick, stiffness, held), held, *arrays)
+
+
+_FOUND: Kept[HomogenisedMaterial] = Kept()
+
+
+def _homogenised(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> HomogenisedMaterial:
+    """See `homogenise`."""
     network = Network.of_brick(brick, stiffness)
     gradients = network.gradient_matrix()
     motion = network.relaxed(gradients, held)

@@ -145,7 +145,7 @@ class Loading:
     def _is_within(self, displacement: np.ndarray) -> bool:
         """Whether no contact has opened, closed or slid and no bond broken at displacements (3, n)."""
         for pairs in self._system.contacts.values():
-            if pairs.is_old(displacement):
+            if pairs.is_old(pairs.spread(displacement)):
                 pairs.search(displacement)
             if slack(pairs.spread(displacement), pairs.arrays, pairs.limits, False) < 0.0:
                 return False

@@ -16,7 +16,7 @@ from dembound.disks.body import DiskBody
 from dembound.disks.stepping.carriers import BEARS, carried, carriers_of, on_side, relative_work, standing
 from dembound.disks.stepping.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
-from dembound.kernels.fragments import pieces
+from dembound.kernels.fragments import broken_off
 from dembound.kernels.tables import Followers
 from dembound.motion.state import Arrays
 
@@ -115,17 +115,11 @@ class Balance:
         steady forces. intact : (m,) disks whose bonds never break; None: there are none.
         """
         debris, alone = np.zeros((2, len(self._ended)), dtype=np.bool_)
-        for part in parts:
+        for part in parts:  # called in the step of every break
             body = part.nodes
-            if part.contacts is not None:
-                fresh = part.contacts.freshly_torn()  # called in the step of every break: all of them
-                self._torn[body] |= fresh
-                alone[body] = fresh & (part.contacts.bonds_left() == 0)
-            slot = part.layout.slot[body]
-            piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
-            kept = np.zeros(0, dtype=np.int64) if intact is None else piece[intact[body]]
-            held = kept if len(kept) else np.array([np.argmax(np.bincount(piece))])
-            debris[body] = ~np.isin(piece, held) & np.isin(piece, piece[self._torn[body]])
+            kept = np.zeros(body.stop - body.start, dtype=np.bool_) if intact is None else intact[body]
+            slot, torn = part.layout.slot[body].astype(np.int64), self._torn[body]
+            debris[body], alone[body] = broken_off(part.pairs, slot, torn, kept)
         debris &= ~self._ended
         alone = (alone | debris) & ~self.let_go
         if not (debris.any() or alone.any()):

@@ -8,18 +8,18 @@ import numpy as np
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import Rows, elastic_constants, with_special
 from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.contacts.placing import NO_DASHPOTS
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.damped_ground import DiskMemories
-from dembound.kernels import bonded, bonded_lanes, damped, dashpots, elastic, elastic_lanes  # noqa: F401  # they register their laws
+from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
-from dembound.kernels.contacts import REFERENCE, SLID
+from dembound.kernels.contacts import LOST, REFERENCE, SLID
 from dembound.kernels.tables import (
     Bonded,
     Contacts,
     DampedLinks,
-    Dashed,
     LaneBonded,
     LaneRows,
     Links,
@@ -77,8 +77,8 @@ class DiskPart(Part):
         self.stops_at_breaks = False
         self.dashes = True
         self.rows = rows
-        self._fastest, self._taken, self._way = np.zeros(CHUNKS), np.zeros(CHUNKS), np.zeros(2)
-        self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, 4))
+        self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, LOST))
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
@@ -92,18 +92,11 @@ class DiskPart(Part):
             return DampedLinks(links, self.memories.arrays)
         if contacts is None or not (self.uses_history or self.watches):
             return links
-        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skins, contacts.cells)
+        pairs = contacts.arrays if self.dashes else contacts.arrays._replace(**NO_DASHPOTS)
+        listed = (pairs, contacts.limits, contacts.origin, contacts.skins, contacts.cells)
         if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
-        law = self._bonded(
-            contacts, Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
-        )
-        if contacts.dashpots is None or not self.dashes:
-            return law
-        return Dashed(law, contacts.arrays, contacts.limits, contacts.viscosity, contacts.drag, self._taken)
-
-    def _bonded(self, contacts: ContactList, law: Bonded) -> Bonded | LaneBonded:
-        """The history-dependent law, in rows of copies if the pairs are."""
+        law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
         if contacts.rows is None:
             return law
         assert isinstance(self.rows, LaneRows)
@@ -113,8 +106,8 @@ class DiskPart(Part):
 
     def react(self, why: int, steps: int, state: State) -> None:
         """List the pairs anew if some may be missing."""
-        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
-            self.contacts.search(state.displacement, state.velocity)
+        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.u):
+            self.contacts.list_anew(state.u, state.v)
 
     def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
         """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""

@@ -15,9 +15,12 @@ from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
 from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
 from dembound.disks.stepping.side_watch import SideWatch
-from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
+from dembound.kernels.common import BROKE, LAW_ENDS
 from dembound.kernels.follower import turn_forces
 from dembound.motion.state import Arrays, State, arrays_of_owner
+
+LOOK = 64
+"""Steps between two looks at what has broken off, or opened near ties."""
 
 
 class DiskSystem(RecordedDisks):
@@ -124,17 +127,27 @@ class DiskSystem(RecordedDisks):
             self.balance.add_to_loads(change)
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces."""
+        """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces.
+
+        Pieces are looked for after breaks, and as contacts open without one, every `LOOK` steps: when pairs are listed
+        must not matter.
+        """
+        looks = self.uses_history and (why == BROKE or state.step % LOOK == 0)
         if why == LAW_ENDS:
             self.switch(state)
-        elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
+        elif self.balance is not None and looks:
             self.balance.end_on_debris(
                 self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self.scene.intact
             )
             self._let_go()
         super().react(why, steps, state)
-        if self.near_ties is not None and self.uses_history:
+        if self.near_ties is not None and looks:
             self.near_ties.look(state, self.contacts["body"])
+
+    def steps_to_look(self, step: int) -> int | None:
+        """See `react`."""
+        looks = self.uses_history and (self.balance is not None or self.near_ties is not None)
+        return LOOK - step % LOOK if looks else None
 
     def switch(self, state: State, fresh: bool = True) -> None:
         """Use the history-dependent law from now on; fresh: with contacts as the elastic law leaves them."""

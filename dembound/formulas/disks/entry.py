@@ -26,6 +26,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import FREE
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.material.homogenise import Network
+from dembound.disks.material.kept import Kept
 from dembound.disks.reflection.bricks import end_scene
 from dembound.disks.scene import DiskScene
 from dembound.disks.sides import ground_at
@@ -150,6 +151,9 @@ def _inwards(side: str) -> float:
     return -1.0 if side in ("right", "top") else 1.0
 
 
+_MOVED: Kept[np.ndarray] = Kept()
+
+
 @dataclass(frozen=True)
 class _Strip:
     """A row of bricks, periodic sideways, with the side of a case at its end.
@@ -249,5 +253,6 @@ class _Strip:
         matrix = (ways.T @ diags(network.springs) @ ways).tocsc()
         matrix += FAINT * diags(matrix.diagonal(), format="csc")
         moved = np.zeros(force.shape)
-        moved[free] = spsolve(matrix, force[free])
+        right = force[free]
+        moved[free] = _MOVED.get(lambda: spsolve(matrix, right), matrix.indptr, matrix.indices, matrix.data, right)
         return moved

@@ -23,6 +23,11 @@ FREQUENCIES = 3
 """Number of frequencies of the case's waves, of equal energy each, over which energies are averaged."""
 
 
+DISKS = 10_000
+"""Disks of the bricks beside a side at one frequency of which are measured: some four seconds; fewer frequencies of
+large bricks are, and of larger ones none."""
+
+
 @dataclass(frozen=True)
 class Reflected:
     """Reflected over incident velocity of plane waves along the normal of a side.
@@ -101,7 +106,9 @@ class Reflections:
         """
         case = end.case
         step = time_step if case.packing.is_lattice else 0.0
-        frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
+        if (most := DISKS // len(scene.ground.brick.radii)) < 1:
+            return {}
+        frequencies = frequencies_of(scene.case, scene.ground, min(FREQUENCIES, most))
         packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
         key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))
         if key not in self._measured:

@@ -4,6 +4,9 @@ A kernel with `x = load(u, i)` and `f = k * (load(u, j) - x)` computes for slots
 `u[j]` for slot i. The compiler turns each operation into one instruction of AVX-512, two of AVX2 or four of NEON and
 SSE2; results are the same bits but for fused multiply-adds, which not all machines have.
 
+Slots that are not one after the other are given by eight indices, `i = load(first, c)` of an array of uint32, in place
+of the first slot: all functions below, and a row of constants (`constants[k, column]`), take either.
+
 Without compiling (NUMBA_DISABLE_JIT=1) the functions below run as Python, on arrays of eight.
 """
 
@@ -26,7 +29,9 @@ LANES = 8
 """Slots computed at once."""
 
 _DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
-_BITS = ir.VectorType(ir.IntType(1), LANES)
+_BITS, _BYTES = ir.VectorType(ir.IntType(1), LANES), ir.VectorType(ir.IntType(8), LANES)
+_INDEX = ir.IntType(64)
+_INDICES = ir.VectorType(_INDEX, LANES)
 _FLAGS = tuple(sorted(FASTMATH))
 
 
@@ -38,7 +43,11 @@ class _MaskType(types.Type):
     """Eight truth values."""
 
 
-lanes, mask = _LanesType("lanes"), _MaskType("lanes mask")
+class _IndicesType(types.Type):
+    """Eight indices."""
+
+
+lanes, mask, indices = _LanesType("lanes"), _MaskType("lanes mask"), _IndicesType("lanes indices")
 
 
 @register_model(_LanesType)
@@ -53,14 +62,49 @@ class _MaskModel(models.PrimitiveModel):
         super().__init__(manager, kind, _BITS)
 
 
-def load(array: np.ndarray, i: int) -> np.ndarray:
-    """The eight doubles of a contiguous array (n,) from index i on."""
-    return array[int(i) : int(i) + LANES].copy()
+@register_model(_IndicesType)
+class _IndicesModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _INDICES)
 
 
-def store(array: np.ndarray, i: int, values: np.ndarray) -> None:
-    """Write eight doubles to a contiguous array (n,) from index i on."""
-    array[int(i) : int(i) + LANES] = values
+At = Any
+"""The first of eight indices one after the other, or eight indices (8,)."""
+
+
+def _all_of(at: At) -> np.ndarray:
+    """The eight indices."""
+    return at if isinstance(at, np.ndarray) else int(at) + np.arange(LANES)
+
+
+def load(array: np.ndarray, at: At) -> np.ndarray:
+    """Eight doubles of a contiguous array (n,), or indices from one of uint32."""
+    return array[_all_of(at)]
+
+
+def load_of(table: np.ndarray, row: int, at: At) -> np.ndarray:
+    """Eight doubles of a row of a contiguous array (m, n)."""
+    return load(table[int(row)], at)
+
+
+def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
+    """Write eight doubles to a contiguous array (n,)."""
+    array[_all_of(at)] = values
+
+
+def store_some(array: np.ndarray, at: At, values: np.ndarray, chosen: int) -> None:
+    """Write those of eight doubles whose bit is set in the byte `chosen` to a contiguous array (n,)."""
+    array[_all_of(at)[bits(chosen)]] = np.broadcast_to(values, LANES)[bits(chosen)]
+
+
+def store_some_of(table: np.ndarray, row: int, at: At, values: np.ndarray, chosen: int) -> None:
+    """Write those of eight doubles whose bit is set in the byte `chosen` to a row of a contiguous array (m, n)."""
+    store_some(table[int(row)], at, values, chosen)
+
+
+def nth(at: At, k: int) -> int:
+    """The index in lane k."""
+    return int(_all_of(at)[int(k)])
 
 
 def splat(number: float) -> np.ndarray:
@@ -78,14 +122,14 @@ def byte_of(chosen: np.ndarray) -> np.uint8:
     return np.packbits(chosen, bitorder="little")[0]
 
 
-def where_equal(array: np.ndarray, i: int, value: int) -> np.ndarray:
-    """Mask of the eight bytes of a contiguous array (n,) from index i on that equal a value."""
-    return array[int(i) : int(i) + LANES] == value
+def where_equal(array: np.ndarray, at: At, value: int) -> np.ndarray:
+    """Mask of eight bytes of a contiguous array (n,) that equal a value."""
+    return array[_all_of(at)] == value
 
 
-def note_bits(array: np.ndarray, i: int, chosen: np.ndarray) -> None:
-    """Write eight bytes to a contiguous array (n,) from index i on, 1 where chosen, else 0."""
-    array[int(i) : int(i) + LANES] = chosen
+def note_some(array: np.ndarray, at: At, ones: int, twos: int, chosen: int) -> None:
+    """Write those of eight bytes whose bit is set in `chosen` to an array (n,): 1 or 2 as in these bytes, else 0."""
+    array[_all_of(at)[bits(chosen)]] = (bits(ones) + 2 * bits(twos).astype(np.uint8))[bits(chosen)]
 
 
 def lane(values: np.ndarray, k: int) -> float:
@@ -114,10 +158,11 @@ def combine_more(
 
 
 def _widened(builder: Any, number: Any) -> Any:
-    """A double in all lanes."""
-    one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
+    """A number in all lanes."""
+    kind = ir.VectorType(number.type, LANES)
+    one = builder.insert_element(ir.Constant(kind, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
     everywhere = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-    return builder.shuffle_vector(one, ir.Constant(_DOUBLES, ir.Undefined), everywhere)
+    return builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), everywhere)
 
 
 def _compiled(
@@ -136,7 +181,7 @@ def _compiled(
             if number is not None and _is_single(args, arguments):
                 return signature(_SINGLE.get(result, result), *(_SINGLE.get(each, each) for each in arguments))
             alike = all(map(_fits, args, arguments))
-            return signature(result, *args) if alike and not _are_numbers(args) else None
+            return signature(result, *args) if alike and not (lanes in arguments and _are_numbers(args)) else None
 
     def register(generate: Callable[..., Any]) -> Callable[..., Any]:
         def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
@@ -145,17 +190,34 @@ def _compiled(
             values = []
             for given, wanted, value in zip(sig.args, arguments, args, strict=True):
                 if isinstance(given, types.Array):
-                    values.append(context.make_array(given)(context, builder, value).data)
+                    array = context.make_array(given)(context, builder, value)
+                    values.append(array.data if given.ndim == 1 else (array.data, array.shape))
                 else:
                     values.append(_widened(builder, value) if wanted == lanes and given != lanes else value)
             found = generate(builder, *values)
             return context.get_dummy_value() if result == types.void else found
 
         infer_global(function)(Typing)
-        lower_builtin(function, *[types.Any] * len(arguments))(lower)
+        variants = _VARIANTS.setdefault(function, [])
+        variants.append((arguments, lower))
+        lower_builtin(function, *[types.Any] * len(arguments))(_choice_of(variants))
         return generate
 
     return register
+
+
+_VARIANTS: dict[Any, list[tuple[Any, Callable[..., Any]]]] = {}
+"""Code of each function for different types of arguments."""
+
+
+def _choice_of(variants: list[tuple[Any, Callable[..., Any]]]) -> Callable[..., Any]:
+    """The code of a function, by the types of a call."""
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        fitting = [each for arguments, each in variants if all(map(_fits, sig.args, arguments))]
+        return (fitting or [variants[0][1]])[0](context, builder, sig, args)
+
+    return lower
 
 
 _SINGLE = {lanes: types.float64, mask: types.boolean}
@@ -173,7 +235,7 @@ def _fits(given: Any, wanted: Any) -> bool:
     if wanted == lanes:
         return given == lanes or isinstance(given, types.Float)
     if isinstance(wanted, types.Array):
-        return isinstance(given, types.Array) and given.dtype == wanted.dtype and given.ndim == 1
+        return isinstance(given, types.Array) and given.dtype == wanted.dtype and given.ndim == wanted.ndim
     if isinstance(wanted, types.UniTuple):
         return isinstance(given, types.UniTuple) and given.dtype == wanted.dtype
     return bool(given == wanted)
@@ -205,7 +267,9 @@ def _intrinsic(function: Any, name: str, count: int) -> None:
 
 
 _numbers = types.UniTuple(types.float64, 1)  # of any length
+_table = types.Array(types.float64, 2, "C")
 _array, _bytes = types.Array(types.float64, 1, "C"), types.Array(types.uint8, 1, "C")
+_numbers_of_slots = types.Array(types.uint32, 1, "C")
 
 for _operator, _in_place, _name in (
     (operator.add, operator.iadd, "fadd"),
@@ -221,14 +285,140 @@ _intrinsic(root, "sqrt", 1)
 _intrinsic(with_sign, "copysign", 2)
 
 
+def _place(builder: Any, first: Any, i: Any, kind: Any) -> Any:
+    """Address of the eight values of a kind from index i on."""
+    return builder.bitcast(builder.gep(first, [i]), kind.as_pointer())
+
+
+def _places(builder: Any, first: Any, at: Any) -> Any:
+    """Addresses of values at eight indices."""
+    size = ir.Constant(_INDICES, [_SIZES[str(first.type.pointee)]] * LANES)
+    begin = _widened(builder, builder.ptrtoint(first, _INDEX))
+    return builder.inttoptr(builder.add(begin, builder.mul(at, size)), ir.VectorType(first.type, LANES))
+
+
+_SIZES = {"double": 8, "i32": 4, "i8": 1}
+
+
+def _call(builder: Any, name: str, returned: Any, *values: Any) -> Any:
+    """Call of an LLVM intrinsic for vectors."""
+    signed = ir.FunctionType(returned, [value.type for value in values])
+    return builder.call(cgutils.get_or_insert_function(builder.module, signed, f"llvm.masked.{name}"), values)
+
+
+_ALIGN, _EVERYWHERE = ir.Constant(ir.IntType(32), 1), ir.Constant(_BITS, [1] * LANES)
+
+
+def gathered(builder: Any, first: Any, at: Any) -> Any:
+    """Values at eight indices of an array, for code of compiled functions."""
+    value = first.type.pointee
+    name = {"double": "f64", "i32": "i32", "i8": "i8"}[str(value)]
+    kind = ir.VectorType(value, LANES)
+    places, others = _places(builder, first, at), ir.Constant(kind, ir.Undefined)
+    return _call(builder, f"gather.v{LANES}{name}.v{LANES}p0", kind, places, _ALIGN, _EVERYWHERE, others)
+
+
 @_compiled(load, lanes, _array, types.uint64)
 def _load(builder: Any, first: Any, i: Any) -> Any:
-    return builder.load(builder.bitcast(builder.gep(first, [i]), _DOUBLES.as_pointer()), align=8)
+    return builder.load(_place(builder, first, i, _DOUBLES), align=8)
+
+
+_compiled(load, lanes, _array, indices)(gathered)
+
+
+@_compiled(load, indices, _numbers_of_slots, types.uint64)
+def _load_indices(builder: Any, first: Any, i: Any) -> Any:
+    kind = ir.VectorType(ir.IntType(32), LANES)
+    return builder.zext(builder.load(_place(builder, first, i, kind), align=4), _INDICES)
+
+
+@_compiled(load, indices, _numbers_of_slots, indices)
+def _load_indices_at(builder: Any, first: Any, at: Any) -> Any:
+    return builder.zext(gathered(builder, first, at), _INDICES)
 
 
 @_compiled(store, types.void, _array, types.uint64, lanes)
 def _store(builder: Any, first: Any, i: Any, values: Any) -> None:
-    builder.store(values, builder.bitcast(builder.gep(first, [i]), _DOUBLES.as_pointer()), align=8)
+    builder.store(values, _place(builder, first, i, _DOUBLES), align=8)
+
+
+@_compiled(store_some, types.void, _array, types.uint64, lanes, types.uint8)
+def _store_some(builder: Any, first: Any, i: Any, values: Any, chosen: Any) -> None:
+    place, bits = _place(builder, first, i, _DOUBLES), builder.bitcast(chosen, _BITS)
+    _call(builder, f"store.v{LANES}f64.p0", ir.VoidType(), values, place, _ALIGN, bits)
+
+
+def _scatter(builder: Any, values: Any, first: Any, at: Any, chosen: Any) -> None:
+    """Write those of eight values that are chosen."""
+    name = {"double": "f64", "i8": "i8"}[str(first.type.pointee)]
+    places = _places(builder, first, at)
+    _call(builder, f"scatter.v{LANES}{name}.v{LANES}p0", ir.VoidType(), values, places, _ALIGN, chosen)
+
+
+@_compiled(store, types.void, _array, indices, lanes)
+def _store_at(builder: Any, first: Any, at: Any, values: Any) -> None:
+    _scatter(builder, values, first, at, _EVERYWHERE)
+
+
+@_compiled(store_some, types.void, _array, indices, lanes, types.uint8)
+def _store_some_at(builder: Any, first: Any, at: Any, values: Any, chosen: Any) -> None:
+    _scatter(builder, values, first, at, builder.bitcast(chosen, _BITS))
+
+
+def _row_of(builder: Any, table: Any, row: Any) -> Any:
+    """Address of a row of an array (m, n)."""
+    first, shape = table
+    return builder.gep(first, [builder.mul(row, builder.extract_value(shape, 1))])
+
+
+for _kind, _loaded, _stored in (
+    (types.uint64, _load, _store_some),
+    (indices, gathered, _store_some_at),
+):
+    _compiled(load_of, lanes, _table, types.uint64, _kind)(
+        lambda builder, table, row, at, of=_loaded: of(builder, _row_of(builder, table, row), at)
+    )
+    _compiled(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
+        lambda builder, table, row, *more, of=_stored: of(builder, _row_of(builder, table, row), *more)
+    )
+
+
+@_compiled(nth, types.uint64, types.uint64, types.uint64)
+def _nth(builder: Any, at: Any, k: Any) -> Any:
+    return builder.add(at, k)
+
+
+@_compiled(nth, types.uint64, indices, types.uint64)
+def _nth_at(builder: Any, at: Any, k: Any) -> Any:
+    return builder.extract_element(at, k)
+
+
+@infer_global(operator.getitem)
+class _RowsTyping(AbstractTemplate):
+    """Constants of eight pairs: a column of an array (p, c) in eight rows."""
+
+    def generic(self, args: Any, kws: Any) -> Any:
+        table, at = args
+        if isinstance(table, types.Array) and table.ndim == 2 and at == _ROWS:
+            return signature(lanes, table, at)
+        return None
+
+
+_ROWS = types.Tuple((indices, types.uint64))
+
+
+@lower_builtin(operator.getitem, types.Array, _ROWS)
+def _rows(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    table = context.make_array(sig.args[0])(context, builder, args[0])
+    rows, column = cgutils.unpack_tuple(builder, args[1])
+    return gathered_rows(builder, table.data, rows, column, table.shape)
+
+
+def gathered_rows(builder: Any, first: Any, rows: Any, column: Any, shape: Any) -> Any:
+    """Values of a column in eight rows of a contiguous array of a shape, for code of compiled functions."""
+    width = builder.extract_value(shape, 1)
+    at = builder.add(builder.mul(rows, _widened(builder, width)), _widened(builder, column))
+    return gathered(builder, first, at)
 
 
 @_compiled(splat, lanes, types.float64)
@@ -246,19 +436,36 @@ def _byte_of(builder: Any, chosen: Any) -> Any:
     return builder.bitcast(chosen, ir.IntType(LANES))
 
 
+def _equal(builder: Any, values: Any, value: Any) -> Any:
+    return builder.icmp_unsigned("==", values, _widened(builder, value))
+
+
 @_compiled(where_equal, mask, _bytes, types.uint64, types.uint8)
 def _where_equal(builder: Any, first: Any, i: Any, value: Any) -> Any:
-    kind = ir.VectorType(ir.IntType(8), LANES)
-    values = builder.load(builder.bitcast(builder.gep(first, [i]), kind.as_pointer()), align=1)
-    one = builder.insert_element(ir.Constant(kind, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
-    everywhere = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-    return builder.icmp_unsigned("==", values, builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), everywhere))
+    return _equal(builder, builder.load(_place(builder, first, i, _BYTES), align=1), value)
 
 
-@_compiled(note_bits, types.void, _bytes, types.uint64, mask)
-def _note_bits(builder: Any, first: Any, i: Any, chosen: Any) -> None:
-    kind = ir.VectorType(ir.IntType(8), LANES)
-    builder.store(builder.zext(chosen, kind), builder.bitcast(builder.gep(first, [i]), kind.as_pointer()), align=1)
+@_compiled(where_equal, mask, _bytes, indices, types.uint8)
+def _where_equal_at(builder: Any, first: Any, at: Any, value: Any) -> Any:
+    return _equal(builder, gathered(builder, first, at), value)
+
+
+def _ones_and_twos(builder: Any, ones: Any, twos: Any) -> Any:
+    """Bytes that are 1, 2 or 0."""
+    one, two = (builder.zext(builder.bitcast(each, _BITS), _BYTES) for each in (ones, twos))
+    return builder.add(one, builder.add(two, two))
+
+
+@_compiled(note_some, types.void, _bytes, types.uint64, types.uint8, types.uint8, types.uint8)
+def _note_some(builder: Any, first: Any, i: Any, ones: Any, twos: Any, chosen: Any) -> None:
+    place = _place(builder, first, i, _BYTES)
+    values, old = _ones_and_twos(builder, ones, twos), builder.load(place, align=1)
+    builder.store(builder.select(builder.bitcast(chosen, _BITS), values, old), place, align=1)
+
+
+@_compiled(note_some, types.void, _bytes, indices, types.uint8, types.uint8, types.uint8)
+def _note_some_at(builder: Any, first: Any, at: Any, ones: Any, twos: Any, chosen: Any) -> None:
+    _scatter(builder, _ones_and_twos(builder, ones, twos), first, at, builder.bitcast(chosen, _BITS))
 
 
 @_compiled(choose, lanes, mask, lanes, lanes, number=lambda builder, *values: builder.select(*values))

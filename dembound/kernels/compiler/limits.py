@@ -7,14 +7,15 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
-from dembound.kernels.compiler.lanes import LANES, lanes, load
+from dembound.kernels.compiler.lanes import LANES, gathered, indices, lanes, load
 from dembound.pairwise import limit_of
 
 
 @infer_global(limit_of)
 class _Typing(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(types.float64, *args)
+        of_eight = isinstance(args[0], types.Array) and args[1] == indices
+        return signature(lanes if of_eight else types.float64, *args)
 
 
 @lower_builtin(limit_of, types.Any, types.Any)
@@ -23,6 +24,8 @@ def _limit_of(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     if not isinstance(sig.args[0], types.Array):
         return limit
     column = context.make_array(sig.args[0])(context, builder, limit)
+    if sig.args[1] == indices:
+        return gathered(builder, column.data, contact_type)
     return builder.load(builder.gep(column.data, [contact_type]))
 
 
@@ -32,7 +35,7 @@ def factor_of(factor: Any, c: Any) -> Any:
 
 
 def factors_of(factor: Any, c: Any) -> Any:
-    """The factors of the eight pairs from c on in lanes; compiled code for a number is 1.0, see `factor_of`."""
+    """The factors of eight pairs in lanes; compiled code for a number is 1.0, see `factor_of`."""
     return factor if isinstance(factor, float) else load(factor, c)
 
 
@@ -47,6 +50,8 @@ def _is_factor(function: Any, of_column: Any, loaded: Any) -> None:
         if not isinstance(sig.args[0], types.Array):
             return context.get_constant(types.float64, 1.0)
         column = context.make_array(sig.args[0])(context, builder, args[0])
+        if sig.args[1] == indices:
+            return gathered(builder, column.data, args[1])
         return loaded(builder, builder.gep(column.data, [args[1]]))
 
     infer_global(function)(Typing)

@@ -8,6 +8,7 @@ from numba import types
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 
+from dembound.kernels.compiler.lanes import gathered_rows, indices, lanes
 from dembound.pairwise import STRAIN
 
 
@@ -28,7 +29,8 @@ def began_with(began: Any, contact_type: Any, component: Any) -> Any:
 @infer_global(began_with)
 class _Typing(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(types.float64, *args)
+        of_eight = isinstance(args[0], types.Array) and args[1] == indices
+        return signature(lanes if of_eight else types.float64, *args)
 
 
 @lower_builtin(began_with, types.Any, types.Any, types.Any)
@@ -37,5 +39,7 @@ def _began_with(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     if not isinstance(sig.args[0], types.Array):
         return context.get_constant(types.float64, 0.0)
     column = context.make_array(sig.args[0])(context, builder, began)
+    if sig.args[1] == indices:
+        return gathered_rows(builder, column.data, contact_type, component, column.shape)
     place = builder.add(builder.mul(contact_type, ir.Constant(contact_type.type, 3)), component)
     return builder.load(builder.gep(column.data, [place]))

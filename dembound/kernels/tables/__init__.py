@@ -17,7 +17,7 @@ from dembound.kernels.tables.grid import (
     Shape,
     TieMemories,
 )
-from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, Dashed, LaneBonded, Links, WatchedLinks
+from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import (
     NO_SIDES,
     Bearings,
@@ -48,7 +48,6 @@ __all__ = [
     "Crossing",
     "DampedGrid",
     "DampedLinks",
-    "Dashed",
     "Drag",
     "Elements",
     "Followers",

@@ -59,12 +59,15 @@ class Contacts(NamedTuple):
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, c).
     began : (p, 3) stretch and shear (m) and rotation that pairs have from the start; 0.0 without a stress at rest.
     state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
-    kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, 1 if the
-    contact has closed in the last step; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m,
-    mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may break, see
-    kernels/contacts.py; force : (4, b).
-    start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
-    + (0 first, 1 second).
+    kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, whether
+    the contact pushed in the last step, see kernels/contacts.py; cracked : (b,) int64, step in which the bond broke,
+    else −1; place : (b, 2) m, mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may
+    break, see kernels/contacts.py; force : (4, b). viscosity : (2, b) N·s/m of normal and shear dashpots of contacts,
+    and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none.
+    bound : (chunks + 1,) pairs in rows come before the first of these, the others are sorted by their particles, and
+    shared out so that it depends on these alone in which chunk a pair is; after the last one places are spare.
+    start, end : rows of contact ends of the pairs in no row, one per particle, those before number `begin` empty, end
+    (e,) uint32 = 2·contact + (0 first, 1 second).
     """
 
     begin: int
@@ -82,8 +85,11 @@ class Contacts(NamedTuple):
     place: np.ndarray
     kept: np.ndarray
     force: np.ndarray
+    viscosity: np.ndarray
+    drag: np.ndarray
     start: np.ndarray
     end: np.ndarray
+    bound: np.ndarray
 
 
 class PairRows(NamedTuple):

@@ -42,7 +42,7 @@ class Bonded(NamedTuple):
     limits : friction and strengths; origin : (2, n) displacements at which pairs were listed, with gaps up to the sum
     of their skins (n,) m; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,)
     m, distance particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped
-    (chunks, 2), lost (chunks, 4) : work space.
+    (chunks, 2), lost (chunks, 5) : work space.
     """
 
     contacts: Contacts
@@ -62,7 +62,7 @@ class LaneBonded(NamedTuple):
 
     bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. stray :
     (k,) ascending slots of disks with ends of other pairs; stray_start (k + 1,), stray_end (e,) those ends, as in
-    Contacts. extra : (3, slots), also_lost (chunks, 4) : work space.
+    Contacts. extra : (3, slots), also_lost (chunks, 5) : work space.
     """
 
     bonded: Bonded
@@ -73,21 +73,6 @@ class LaneBonded(NamedTuple):
     stray_end: np.ndarray
     extra: np.ndarray
     also_lost: np.ndarray
-
-
-class Dashed(NamedTuple):
-    """The history-dependent law with dashpots at closed contacts, see kernels/dashpots.py.
-
-    contacts, limits : of the law. viscosity : (b, 2) N·s/m of normal and shear dashpots, by places of the contacts;
-    drag : (b, 2) N, their last forces, pushing and along the shear. taken (chunks,) : work space.
-    """
-
-    law: Bonded | LaneBonded
-    contacts: Contacts
-    limits: Any
-    viscosity: np.ndarray
-    drag: np.ndarray
-    taken: np.ndarray
 
 
 class BarContacts(NamedTuple):

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from dembound.casefile.disks import SCHEMA, DiskCase
-from dembound.casefile.types import LAWS
 from dembound.disks.contacts.pairs import first_break
 from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
@@ -21,6 +20,7 @@ from dembound.disks.rotating_pressure import Membranes
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step, largest_overlap
+from dembound.disks.step_cost import slower
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
 from dembound.disks.stepping.overlaps import Overlaps
 from dembound.disks.stepping.system import DiskSystem
@@ -39,7 +39,7 @@ from dembound.kinds.disks.summary import (
     warnings_after_disks,
 )
 from dembound.kinds.disks.warnings import disk_warnings
-from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Stage, Stages
+from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial
@@ -153,11 +153,9 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Facts on packing, law, loads and boundaries."""
         return disk_facts(scene)
 
-    def not_estimated(self, case: DiskCase) -> list[str]:
-        """Work that the estimated time leaves out: a law that replaces the elastic one later."""
-        if LAWS[case.material.law].has_history and case.material.begins_elastic:
-            return [f"the additional time of {case.material.law} once it begins"]
-        return []
+    def slower(self, scene: DiskScene) -> Slower | None:
+        """The pace of ground all broken, or of contacts that slide, by measured constants."""
+        return slower(scene)
 
     def settles(self, case: DiskCase) -> bool:
         """Whether the case has a static stage of its own."""

@@ -111,7 +111,9 @@ def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken()
 def test_without_time_for_any_one_choice_is_tried_and_none_is_worse_than_the_given_case(monkeypatch) -> None:
     monkeypatch.setattr(candidates, "LONGEST", 0.0)
     choice = advised(small(BAR), 0.1)  # larger disks alone do not err so much
-    assert choice.words == "as in the case; the search ended early: it may take 8 s, or 20 % of the run or of --longest"
+    assert (
+        choice.words == "as in the case; the search ended early: it may take 12 s, or 20 % of the run or of --longest"
+    )
     assert choice.cost == choice.own_cost
     assert choice.tried == 1
 

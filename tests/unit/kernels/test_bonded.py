@@ -9,7 +9,7 @@ from plain_kernels import PlainPairs, behind, random_pairs, stepped
 
 from dembound.kernels import bonded, follower  # noqa: F401  (they make the law and the forces that turn known)
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
-from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
+from dembound.kernels.contacts import BONDED, INTACT, LOST, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
 from dembound.kernels.near import room
 from dembound.kernels.tables import Bonded, Cells, Contacts, Log
@@ -30,7 +30,7 @@ def start() -> tuple[np.ndarray, np.ndarray]:
 
 def bonded_law(pairs: Contacts, limits: Limits, *, skin: float = FAR, stop: bool = False) -> Bonded:
     """The law on these pairs, which are listed where particles are at the start."""
-    space = np.zeros(2), np.zeros(CHUNKS), np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, 4))
+    space = np.zeros(2), np.zeros(CHUNKS), np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, LOST))
     return Bonded(pairs, limits, np.zeros((2, PARTICLES)), np.full(PARTICLES, 0.5 * skin), EVERY, stop, *space)
 
 

@@ -5,6 +5,8 @@ import pytest
 
 from dembound.disks.contacts.pair_list import CELL, cells_of
 from dembound.kernels import near
+from dembound.kernels.contacts import INTACT, NONE
+from dembound.kernels.listing import NEW, keys_of, merged
 from dembound.kernels.near import room
 
 
@@ -107,16 +109,36 @@ def test_disks_that_all_move_along_keep_their_room_and_a_fast_one_takes_that_of_
     assert room(u, 0, origin, skins, cells) < 0.0
 
 
-def test_pairs_are_found_among_others_in_either_order() -> None:
+def test_a_pair_has_one_key_whichever_disk_is_the_first() -> None:
     rng = np.random.default_rng(2)
-    listed, images = rng.integers(0, 30, (200, 2)), rng.integers(-1, 2, (200, 2)).astype(np.int8)
-    asked, turned = rng.permutation(200)[:50], rng.random(50) < 0.5
-    pairs = np.where(turned[:, None], listed[asked][:, ::-1], listed[asked])
-    wanted = np.where(turned[:, None], -images[asked], images[asked])
-    found = near.numbers_of(pairs, wanted, *listed.T, images, 30)
+    (first, second), images = rng.integers(0, 30, (2, 400)), rng.integers(-1, 2, (400, 2)).astype(np.int8)
+    keys, turned = keys_of(first, second, images, 30)
+    assert np.array_equal(keys, keys_of(second, first, -images, 30)[0])
+    assert 0.3 < turned.mean() < 0.7
 
-    same = np.hstack([listed, images])[found]
-    other = np.hstack([listed[:, ::-1], -images])[found]
-    asked_for = np.hstack([pairs, wanted])
-    assert ((same == asked_for).all(axis=1) | (other == asked_for).all(axis=1)).all()
-    assert near.numbers_of(pairs, wanted + 5, *listed.T, images, 30).tolist() == [-1] * 50
+    pairs, periods = near.pairs_of(keys, 30)
+    there = np.hstack([np.column_stack([first, second]), images])
+    back = np.hstack([np.column_stack([second, first]), -images])
+    assert np.array_equal(np.hstack([pairs, periods]), np.where(turned[:, None], back, there))
+    assert (pairs[:, 0] <= pairs[:, 1]).all()
+
+
+@pytest.mark.parametrize("axes", [(1, 1), (0, 0)], ids=["periodic", "open"])
+def test_disks_that_reach_far_find_all_and_none_of_no_reach(axes) -> None:
+    rng, count = np.random.default_rng(5), 300
+    positions, reach, box = rng.random((count, 2)) * 20.0, rng.uniform(0.3, 0.5, count), np.array([20.0, 20.0])
+    reach[::37], reach[5] = 2.4, -np.inf
+    names = np.arange(count) * 2 + 3
+    found = near.pairs_of(near.near_keys(positions, reach, box * axes, names, 0.5), names[-1] + 1)
+    expected = by_trial(positions, reach, 0.0, box * axes)
+    expected[:, :2] = names[expected[:, :2]]
+    assert np.hstack(found).tolist() == expected.tolist()
+    assert len(expected) > 300
+
+
+def test_a_list_keeps_bonds_and_held_pairs_and_takes_near_ones_that_are_not_elsewhere() -> None:
+    listed, state = np.array([2, 5, 7, 11, 13]), np.array([NONE, INTACT, NONE, NONE, NONE], np.uint8)
+    near_ones, held, elsewhere = np.array([1, 3, 7, 8, 17]), np.array([6, 11]), np.array([3, 9])
+    keys, source = merged(near_ones, listed, state, held, elsewhere)
+    assert keys.tolist() == [1, 5, 7, 8, 11, 17]
+    assert source.tolist() == [NEW, 1, 2, NEW, 3, NEW]

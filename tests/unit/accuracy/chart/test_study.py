@@ -24,14 +24,14 @@ SPACINGS = {"bar.spacing": [0.05, 0.025]}
 
 
 class Log:
-    """Names of the runs of a chart."""
+    """Names of the runs of a chart; those that are not timed have their size, particles × steps."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
 
     @contextmanager
     def __call__(self, name: str):
-        self.names.append(name)
+        self.names.append(name.rpartition(", ")[0] if name.endswith(" steps") else name)
         yield Progress()
 
 

@@ -10,6 +10,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, note_places
+from dembound.kernels.tables import Contacts
 
 SIDES = {
     "periodic sideways": {side: WRAP[side] for side in ("left", "right")},
@@ -46,9 +47,15 @@ def ordered(i: int, j: int, image: np.ndarray) -> Key:
     return tuple(int(number) for number in min(there, back))
 
 
+def listed_in(contacts: ContactList) -> Contacts:
+    """The pairs without spare places."""
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
+    return contacts.arrays._replace(**{name: contacts.of(name) for name in names})
+
+
 def keys(contacts: ContactList) -> list[Key]:
     """All listed pairs, with images recognised by the vectors they started with."""
-    pairs, places = contacts.arrays, contacts.assembly.positions
+    pairs, places = listed_in(contacts), contacts.assembly.positions
     beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
     images = np.rint(beyond / contacts.assembly.size).astype(int)
     # vectors are those of the brick or differences of places
@@ -77,7 +84,7 @@ def shaken(contacts: ContactList, size: float, seed: int = 1) -> np.ndarray:
 
 def test_after_a_search_near_pairs_and_bonds_are_listed_and_no_others(contacts: ContactList) -> None:
     before = keys(contacts)
-    bonded = {key for key, state in zip(before, contacts.arrays.state, strict=True) if state == INTACT}
+    bonded = {key for key, state in zip(before, contacts.of("state"), strict=True) if state == INTACT}
     moved = shaken(contacts, 0.2)
     contacts.search(moved)
     listed = Counter(keys(contacts))
@@ -96,7 +103,7 @@ def test_pairs_that_stay_keep_their_memory_and_new_ones_have_none(contacts: Cont
     pairs.shear[:], pairs.slip[:] = np.arange(count) + 1.0, -np.arange(count) - 1.0
 
     def history() -> dict[Key, tuple]:
-        listed = contacts.arrays
+        listed = listed_in(contacts)
         rows = np.abs(listed.constants[listed.contact_type])
         each = zip(listed.state, listed.shear, listed.slip, *rows.T, strict=True)
         return dict(zip(keys(contacts), each, strict=True))
@@ -154,8 +161,9 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene) -> None:
     left = list_of(hollow)
     left.take_over_subset(contacts, kept)
 
+    old = listed_in(contacts)
     among = np.isin(np.column_stack([old.first, old.second]), kept).all(axis=1)
-    new = left.arrays
+    new = listed_in(left)
     assert 0 < np.count_nonzero(among) < len(among)
     for before, after in ((old.first[among], kept[new.first]), (old.second[among], kept[new.second])):
         assert np.array_equal(before, after)

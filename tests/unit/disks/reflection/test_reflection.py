@@ -132,3 +132,15 @@ def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None
     _, reflections = beside.continuum
     assert reflections.angles.tolist() == [0.0]
     assert 0.0 < reflections.total("p")[0, 0] < 1e-3 < beside.found.total("p")[0, 0]
+
+
+def test_sides_are_measured_within_a_time_at_fewer_frequencies_or_not_at_all(dembound, tmp_path) -> None:
+    """One disk: 12 frequencies of 0.08 s, 0.96 s in all, so 0.5 s is enough for 6."""
+    (tmp_path / "strip.toml").write_text(small(STRIP).text)
+    fewer = dembound("boundary", "strip.toml", "--side", "right", "--longest", 0.5)
+    assert fewer.code == 0, fewer.err
+    assert "12 frequencies take about 1 s of CPU time, so 6 are measured; --longest 1 measures all" in fewer.err
+    for given in ((), ("--frequency", 20)):
+        refused = dembound("boundary", "strip.toml", "--side", "right", "--longest", 0.05, *given)
+        assert refused.code == 2
+        assert "at most 0.05 s are allowed; --longest" in refused.err

@@ -16,17 +16,25 @@ from dembound.kernels.compiler.lanes import (
     LANES,
     at_most,
     bits,
+    byte_of,
     choose,
     combine,
     combine_more,
     lane,
     load,
     magnitude,
+    note_some,
+    nth,
     root,
     splat,
     store,
+    store_some,
+    where_equal,
     with_sign,
 )
+from dembound.kernels.compiler.limits import factors_of
+from dembound.kernels.compiler.start_strain import began_with
+from dembound.pairwise import limit_of
 
 OPTIONS = {name: value for name, value in FAST.items() if name != "cache"}
 
@@ -61,6 +69,34 @@ def test_compiled_lanes_are_what_python_says() -> None:
     # a fused multiply-add rounds once where Python rounds twice
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14)
     assert np.isnan(found.reshape(4, width)[:, [0, 1, -1]]).all()
+
+
+def eight(slots, values, table, numbers, limits, other, numbers_other):  # type: ignore[no-untyped-def]
+    """Values at eight indices, a column of eight rows, limits, bytes; some of each written elsewhere."""
+    at = load(slots, U(1))
+    rows = load(slots, at)
+    first = load(values, at) + table[rows, U(2)] - limit_of(limits, rows) + factors_of(limits, at)
+    first += splat(factors_of(1.0, at)) + began_with(table, at, U(1)) + began_with(0.0, at, U(1))
+    chosen = np.uint8(byte_of(where_equal(numbers, at, np.uint8(2))) | np.uint8(3))
+    store_some(other, at, first, chosen)
+    store_some(other, U(LANES + 5), first, chosen)
+    note_some(numbers_other, at, np.uint8(0b01010101), np.uint8(0b10100010), chosen)
+    note_some(numbers_other, U(LANES + 5), np.uint8(0b01010101), np.uint8(0b10100010), chosen)
+    return float(nth(at, U(2))) + float(nth(U(4), U(2)))
+
+
+def test_eight_indices_are_what_python_says() -> None:
+    rng, count = np.random.default_rng(1), LANES + 4
+    slots = rng.permutation(count).astype(np.uint32)
+    values, limits = rng.uniform(1.0, 2.0, (2, count))
+    given = slots, values, rng.uniform(1.0, 2.0, (count, 3)), rng.integers(0, 3, count).astype(np.uint8), limits
+    found, expected = (
+        [np.full(3 * LANES, np.nan), np.full(3 * LANES, 9, dtype=np.uint8)] for _ in range(2)
+    )  # fmt: skip
+    assert njit(**OPTIONS)(eight)(*given, *found) == eight(*given, *expected)
+    np.testing.assert_array_equal(found[0], expected[0])
+    np.testing.assert_array_equal(found[1], expected[1])
+    assert np.isnan(found[0]).sum() > LANES  # unchosen lanes are left
 
 
 @pytest.mark.parametrize("function", [combine, combine_more])
