@@ -96,13 +96,10 @@ def _(law: WatchedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost
 
 @law_cost.register
 def _(law: DampedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost:
-    # every memory is read and written (16), and takes five operations, the ledger 15; forces at rest (24) and layers
-    # (1) are read. Early disks do two steps once they are in cache: then u, v and memories are moved once for both
-    memories, each = law.memories, 3 * law.memories.factors.shape[2]
-    rest, early = memories.rest.shape[1] > 0, LANES * float(memories.ahead.early.sum()) * (memories.ahead.lag > 0)
-    moved = 16.0 * memories.memory.size + (24.0 if rest else 0.0) * count + memories.memory.size / each
-    moved -= early * (8.0 * each + 48.0)
-    return law_cost(law.links, count, ends, free) + Cost(moved, (5.0 * each + 15.0) * count)
+    # every memory is read and written (16), and takes six operations; forces at rest (24) and layers (1) are read
+    memory, rest = law.memories.memory, law.memories.rest.shape[1] > 0
+    moved = 16.0 * memory.size + (24.0 if rest else 0.0) * count + memory.shape[1]
+    return law_cost(law.links, count, ends, free) + Cost(moved, 6.0 * memory.shape[0] * count)
 
 
 @law_cost.register

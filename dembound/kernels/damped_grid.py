@@ -10,7 +10,7 @@ from numba import get_thread_id, njit
 from dembound.kernels.common import CHUNKS, FAST, U, column_sum
 from dembound.kernels.compiler.lanes import LANES, load, splat, store
 from dembound.kernels.compiler.separate import in_chunks
-from dembound.kernels.damped_rows import remembered
+from dembound.kernels.damped import FADED
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, shape_of
 from dembound.kernels.grid import move_core, move_node, store_rim, sum_at, sum_of
 from dembound.kernels.law import is_law
@@ -31,9 +31,10 @@ def _remember(shape, memory, factors, count, block, space):
         for each in range(count):
             k = U(each)
             j = first + k * size + i
-            t = load(memory, j) + f
-            store(memory, j, remembered(load(factors, own + k * _STEP), t, f))
-            total += load(factors, own + (U(count) + k) * _STEP) * t
+            part = load(factors, own + (U(count) + k) * _STEP) * f
+            r = load(memory, j) + part
+            store(memory, j, (load(factors, own + k * _STEP) * r + (part + FADED)) - FADED)
+            total += r
         store(space, i, f - total)
 
 

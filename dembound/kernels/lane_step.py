@@ -3,7 +3,7 @@
 from numba import njit
 
 from dembound.kernels.common import CHUNKS, FAST, INLINED, REST, U
-from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, store, with_sign
+from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, store_of, with_sign
 from dembound.kernels.elastic import row_force
 
 RUN = 16
@@ -85,9 +85,9 @@ def next_place(rows, block, group, column, r):
 @njit(**INLINED)
 def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
     """Store velocities and new displacements; for supported disks forces in place of displacements."""
-    store(v[0], i, now_x)
-    store(v[1], i, now_y)
-    store(v[2], i, now_t)
+    store_of(v, U(0), i, now_x)
+    store_of(v, U(1), i, now_y)
+    store_of(v, U(2), i, now_t)
     x += step * now_x
     y += step * now_y
     turn += step * now_t
@@ -96,6 +96,6 @@ def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, 
         x = choose(held, fx, x)
         y = choose(held, fy, y)
         turn = choose(held, moment, turn)
-    store(u_next[0], i, x)
-    store(u_next[1], i, y)
-    store(u_next[2], i, turn)
+    store_of(u_next, U(0), i, x)
+    store_of(u_next, U(1), i, y)
+    store_of(u_next, U(2), i, turn)

@@ -8,7 +8,6 @@ from dembound.damping import Attenuation, factors_of
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.layout import Rows, elastic_constants
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.stepping.steps_ahead import steps_ahead
 from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.damped import remember_crossing
 from dembound.kernels.tables.contacts import LaneRows
@@ -24,8 +23,7 @@ class DiskMemories:
     ----------
     factors : (layers, 2, K) see `factors_of`. layer : (m,) number of the layer of each disk. rows : their contacts.
     nodes : their range among the scene's nodes. layout : the slots of these. supported : (k,) ascending slots of all
-    supported nodes, and of others that do no two steps in one sweep. crossing : memories of contacts between layers.
-    drag : on the disks.
+    supported nodes. crossing : memories of contacts between layers. drag : on the disks.
     """
 
     def __init__(
@@ -42,23 +40,30 @@ class DiskMemories:
         slot = layout.slot[nodes]
         block = int(slot.min()) // LANES
         end = int(rows.group_block[-1]) if isinstance(rows, LaneRows) else -(-(int(slot.max()) + 1) // LANES)
-        layers = np.zeros(layout.count, dtype=np.uint8)
-        layers[slot] = layer
-        empty = np.ones(layout.count, dtype=bool)
-        empty[slot] = False
+        self._slot, self._count = slot - LANES * block, factors.shape[2]
+        layers = np.full((end - block) * LANES, -1, dtype=np.int16)
+        layers[self._slot] = layer
+        inner = layers.reshape(-1, LANES)
+        inner = np.where(inner < 0, np.maximum(inner.max(axis=1, keepdims=True), 0), inner)  # empty slots are as others
+        kinds, kind = np.unique(inner.astype(np.uint8).view(np.uint64), return_inverse=True)
+        each = np.moveaxis(factors[kinds.view(np.uint8).reshape(-1, LANES)], 1, -1)
+        own = aligned_zeros(*each.shape)
+        own[...] = each
         special = np.zeros(-(-layout.count // LANES), dtype=np.uint8)
         special[np.union1d(supported, crossing.target) // LANES] = 1
-        inner, unused = (each[LANES * block : LANES * end].reshape(-1, LANES) for each in (layers, empty))
-        inner[unused] = np.repeat(np.where(unused, 0, inner).max(axis=1), unused.sum(axis=1))
-        special[block:end] |= 2 * (inner.min(axis=1) != inner.max(axis=1)).astype(np.uint8)
-        self._slot = slot - LANES * block
-        memory = aligned_zeros(3 * factors.shape[2] * LANES * (end - block))
-        force = aligned_zeros(3, layout.count)
-        rest, held = np.zeros((3, 0)), np.zeros(1)
-        ahead = steps_ahead(rows, special)
-        mechanisms = tuple(np.zeros(factors.shape[2]).tolist())
         self.arrays = Memories(
-            block, layers, special, factors, memory, rest, force, held, crossing, drag, ahead, mechanisms
+            mechanisms=tuple(np.zeros(self._count).tolist()),
+            block=block,
+            kind=np.concatenate([np.zeros(block), kind.ravel()]).astype(np.uint32),
+            special=special,
+            factors=own.reshape(-1),
+            memory=aligned_zeros(3 * self._count * LANES * (end - block)),
+            rest=np.zeros((3, 0)),
+            force=aligned_zeros(3, layout.count),
+            held=np.zeros(1),
+            fading=np.zeros(1, dtype=np.uint8),
+            crossing=crossing,
+            drag=drag,
         )
 
     def rest_at(self, u: np.ndarray, force: np.ndarray) -> None:
@@ -72,11 +77,11 @@ class DiskMemories:
 
     @property
     def _blocks(self) -> np.ndarray:
-        """The memories (blocks, K, 3, 8), a view."""
-        return self.arrays.memory.reshape(-1, self.arrays.factors.shape[2], 3, LANES)
+        """The memories (blocks, 3, K, 8), a view."""
+        return self.arrays.memory.reshape(-1, 3, self._count, LANES)
 
     def saved_arrays(self) -> Arrays:
-        """The memories (m, K, 3) of the disks, and (t, 3, K) of contacts between layers."""
+        """The memories (m, 3, K) of the disks, and (t, 3, K) of contacts between layers."""
         block, lane = np.divmod(self._slot, LANES)
         return {"memory": self._blocks[block, :, :, lane], "crossing": self.arrays.crossing.memory}
 
@@ -149,10 +154,7 @@ def disk_memories(
         return None
     factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
     drag = _drag(scene, nodes, supported, time_step)
-    kept = supported
-    if scene.twin is not None:  # dashpots follow the velocities of twins at every step
-        kept = np.union1d(supported, scene.layout.slot[scene.twin[scene.twin != np.arange(scene.count)]])
-    return DiskMemories(factors, layer, rows, nodes, scene.layout, kept, crossing, drag)
+    return DiskMemories(factors, layer, rows, nodes, scene.layout, supported, crossing, drag)
 
 
 def drag_rates(scene: DiskBody) -> np.ndarray:

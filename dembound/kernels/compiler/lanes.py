@@ -92,6 +92,11 @@ def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
     array[_all_of(at)] = values
 
 
+def store_of(table: np.ndarray, row: int, at: At, values: np.ndarray) -> None:
+    """Write eight doubles to a row of a contiguous array (m, n)."""
+    store(table[int(row)], at, values)
+
+
 def store_some(array: np.ndarray, at: At, values: np.ndarray, chosen: int) -> None:
     """Write those of eight doubles whose bit is set in the byte `chosen` to a contiguous array (n,)."""
     array[_all_of(at)[bits(chosen)]] = np.broadcast_to(values, LANES)[bits(chosen)]
@@ -371,15 +376,18 @@ def _row_of(builder: Any, table: Any, row: Any) -> Any:
     return builder.gep(first, [builder.mul(row, builder.extract_value(shape, 1))])
 
 
-for _kind, _loaded, _stored in (
-    (types.uint64, _load, _store_some),
-    (indices, gathered, _store_some_at),
+for _kind, _loaded, _stored, _some_stored in (
+    (types.uint64, _load, _store, _store_some),
+    (indices, gathered, _store_at, _store_some_at),
 ):
     _compiled(load_of, lanes, _table, types.uint64, _kind)(
         lambda builder, table, row, at, of=_loaded: of(builder, _row_of(builder, table, row), at)
     )
-    _compiled(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
+    _compiled(store_of, types.void, _table, types.uint64, _kind, lanes)(
         lambda builder, table, row, *more, of=_stored: of(builder, _row_of(builder, table, row), *more)
+    )
+    _compiled(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
+        lambda builder, table, row, *more, of=_some_stored: of(builder, _row_of(builder, table, row), *more)
     )
 
 

@@ -143,45 +143,30 @@ class Drag(NamedTuple):
     before: np.ndarray
 
 
-class Ahead(NamedTuple):
-    """Two steps in one sweep over the disks of a part, so that both take them from RAM once.
-
-    early : (blocks,) uint8 of the scene, 1 for blocks that need no others than such that move without supports and are
-    less than `lag` tiles away; once these have done a step, early ones can do the next. lag is 0 where none are.
-    state : (2,) what is done in this step, and its number. works : (chunks, 48) W, power taken from late blocks after
-    and before this step, and from early ones in this step and in the next, in lanes.
-    """
-
-    early: np.ndarray
-    lag: int
-    state: np.ndarray
-    works: np.ndarray
-
-
 class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
-    layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
-    uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of
-    several layers. memory : (n/8·K·3·8,) N and N·m, of each block of eight disks mechanism by mechanism, of each
-    component by component. rest : (3, slots) contact forces at rest, which
-    nothing remembers, or (3, 0) for none. force (3, slots), held (1,) : work space. crossing : of contacts between
-    layers. drag : NoDrag, or Drag, which is not remembered. ahead : which disks do two steps in one sweep.
-    mechanisms : K numbers that are not used; K is part of the type, so known when compiled.
+    mechanisms : K numbers, only used for their count K, which is known when a kernel is compiled. kind : (blocks,)
+    uint32 of the scene, row of each block in factors (kinds·2·K·8,), which has e, then g of the mechanisms of its disks.
+    special : (blocks,) uint8 of the scene, 1 for blocks with supported disks or contacts between layers. memory :
+    (n/8·3·K·8,) N and N·m, of each block component by component, of each mechanism by mechanism. rest : (3, slots)
+    contact forces at rest, which nothing remembers, or (3, 0) for none. force (3, slots), held (1,), fading (1,) uint8,
+    whether small memories become zero in this step : work space. crossing : of contacts between layers. drag : NoDrag,
+    or Drag, which is not remembered.
     """
 
+    mechanisms: tuple[float, ...]
     block: int
-    layer: np.ndarray
+    kind: np.ndarray
     special: np.ndarray
     factors: np.ndarray
     memory: np.ndarray
     rest: np.ndarray
     force: np.ndarray
     held: np.ndarray
+    fading: np.ndarray
     crossing: Crossing
     drag: NoDrag | Drag
-    ahead: Ahead
-    mechanisms: tuple[float, ...]
 
 
 class DampedLinks(NamedTuple):
