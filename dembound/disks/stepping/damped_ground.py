@@ -41,11 +41,9 @@ class DiskMemories:
         block = int(slot.min()) // LANES
         end = int(rows.group_block[-1]) if isinstance(rows, LaneRows) else -(-(int(slot.max()) + 1) // LANES)
         self._slot, self._count = slot - LANES * block, factors.shape[2]
-        layers = np.full((end - block) * LANES, -1, dtype=np.int16)
+        layers = np.zeros(LANES * (end - block), dtype=np.uint8)
         layers[self._slot] = layer
-        inner = layers.reshape(-1, LANES)
-        inner = np.where(inner < 0, np.maximum(inner.max(axis=1, keepdims=True), 0), inner)  # empty slots are as others
-        kinds, kind = np.unique(inner.astype(np.uint8).view(np.uint64), return_inverse=True)
+        kinds, kind = np.unique(layers.view(np.uint64), return_inverse=True)  # of blocks: eight layers
         each = np.moveaxis(factors[kinds.view(np.uint8).reshape(-1, LANES)], 1, -1)
         own = aligned_zeros(*each.shape)
         own[...] = each

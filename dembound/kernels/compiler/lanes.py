@@ -87,6 +87,10 @@ def load_of(table: np.ndarray, row: int, at: At) -> np.ndarray:
     return load(table[int(row)], at)
 
 
+def fetch(array: np.ndarray, at: int) -> None:
+    """Ask for eight doubles of a contiguous array (n,), or beyond its end, that are soon loaded; changes nothing."""
+
+
 def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
     """Write eight doubles to a contiguous array (n,)."""
     array[_all_of(at)] = values
@@ -340,6 +344,14 @@ def _load_indices(builder: Any, first: Any, i: Any) -> Any:
 @_compiled(load, indices, _numbers_of_slots, indices)
 def _load_indices_at(builder: Any, first: Any, at: Any) -> Any:
     return builder.zext(gathered(builder, first, at), _INDICES)
+
+
+@_compiled(fetch, types.void, _array, types.uint64)
+def _fetch(builder: Any, first: Any, i: Any) -> None:
+    place, word = builder.bitcast(builder.gep(first, [i]), ir.IntType(8).as_pointer()), ir.IntType(32)
+    signed = ir.FunctionType(ir.VoidType(), [place.type, word, word, word])
+    prefetch = cgutils.get_or_insert_function(builder.module, signed, "llvm.prefetch.p0")
+    builder.call(prefetch, [place, word(1), word(3), word(1)])  # to be written, into all caches, data
 
 
 @_compiled(store, types.void, _array, types.uint64, lanes)

@@ -147,7 +147,7 @@ class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
     mechanisms : K numbers, only used for their count K, which is known when a kernel is compiled. kind : (blocks,)
-    uint32 of the scene, row of each block in factors (kinds·2·K·8,), which has e, then g of the mechanisms of its disks.
+    uint32 of the scene, row of each block in factors (kinds·2·K·8,), e, then g of the mechanisms of its disks.
     special : (blocks,) uint8 of the scene, 1 for blocks with supported disks or contacts between layers. memory :
     (n/8·3·K·8,) N and N·m, of each block component by component, of each mechanism by mechanism. rest : (3, slots)
     contact forces at rest, which nothing remembers, or (3, 0) for none. force (3, slots), held (1,), fading (1,) uint8,

@@ -77,6 +77,23 @@ def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list
     # each sum of some fifty products is rounded by 1e-15 of its terms, in every step
     assert np.abs(simulation.state.displacement - expected).max() < STEPS * 1e-14 * np.abs(expected).max()
     assert simulation.state.work[0, 1] == pytest.approx(taken, rel=1e-10)
+    (part,) = simulation.system.parts
+    assert part.memories.saved_arrays()["memory"].any(axis=(0, 2)).tolist() == [True, "y" not in held, True]
+
+
+@pytest.mark.parametrize("extent", [[4.0, 4.0], [32.0, 8.0]], ids=["one by one", "rows of copies"])
+def test_small_memories_become_zero_at_every_256th_step(bar, extent: list[float]) -> None:
+    scene = build(bar({**BODY, "boundary": {}, "packing": GRAINS | {"size": extent}, "material.quality_factor": 5.0}))
+    simulation = Simulation(scene, STEP)
+    (part,) = simulation.system.parts
+    memory = part.memories.arrays.memory
+    left = []
+    for steps, size in ((1, 1e-250), (255, 1e-250), (1, 1e-250), (256, 1e-180)):  # steps 0, 255, 256 and 512 are last
+        memory[:] = size
+        simulation.advance(steps)
+        left.append(bool(memory.any()))
+
+    assert left == [False, True, False, True]
 
 
 @pytest.mark.parametrize("boundary", ["outside", "free_field"])
