@@ -96,10 +96,10 @@ def _(law: WatchedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost
 
 @law_cost.register
 def _(law: DampedLinks, count: int, ends: int, free: tuple[float, ...]) -> Cost:
-    # every memory is read and written (16), and takes six operations; forces at rest (24) and layers (1) are read
-    memory, rest = law.memories.memory, law.memories.rest.shape[1] > 0
-    moved = 16.0 * memory.size + (24.0 if rest else 0.0) * count + memory.shape[1]
-    return law_cost(law.links, count, ends, free) + Cost(moved, 6.0 * memory.shape[0] * count)
+    # every memory is read and written (16), and takes five operations; forces at rest (24) and kinds (4) are read
+    memories, rest = law.memories, law.memories.rest.shape[1] > 0
+    moved = 16.0 * memories.memory.size + (24.0 if rest else 0.0) * count + 4.0 * memories.kind.size
+    return law_cost(law.links, count, ends, free) + Cost(moved, 15.0 * len(memories.mechanisms) * count)
 
 
 @law_cost.register

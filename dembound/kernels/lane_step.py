@@ -3,9 +3,12 @@
 from numba import njit
 
 from dembound.kernels.common import CHUNKS, FAST, INLINED, REST, U
-from dembound.kernels.compiler.lane_access import store
+from dembound.kernels.compiler.lane_access import store_of
 from dembound.kernels.compiler.lanes import LANES, at_most, choose, magnitude, with_sign
 from dembound.kernels.elastic import row_force
+
+RUN = 16
+"""Blocks of which chunks have whole multiples, as to begin one takes as long as some blocks."""
 
 
 @njit(**INLINED)
@@ -51,10 +54,11 @@ def stray_forces(rows, first, last, u):
 
 @njit(**INLINED)
 def blocks_of(rows, chunk):
-    """First block of a chunk, and the one after its last."""
+    """First block of a chunk, and the one after its last; in small bodies many chunks are empty."""
     begin = rows.group_block[0]
     n = rows.group_block[rows.group_block.size - 1] - begin
-    return begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
+    first, last = chunk * n // CHUNKS // RUN * RUN, (chunk + 1) * n // CHUNKS // RUN * RUN
+    return begin + first, begin + (n if chunk + 1 == CHUNKS else last)
 
 
 @njit(**INLINED)
@@ -82,9 +86,9 @@ def next_place(rows, block, group, column, r):
 @njit(**INLINED)
 def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
     """Store velocities and new displacements; for supported disks forces in place of displacements."""
-    store(v[0], i, now_x)
-    store(v[1], i, now_y)
-    store(v[2], i, now_t)
+    store_of(v, U(0), i, now_x)
+    store_of(v, U(1), i, now_y)
+    store_of(v, U(2), i, now_t)
     x += step * now_x
     y += step * now_y
     turn += step * now_t
@@ -93,6 +97,6 @@ def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, 
         x = choose(held, fx, x)
         y = choose(held, fy, y)
         turn = choose(held, moment, turn)
-    store(u_next[0], i, x)
-    store(u_next[1], i, y)
-    store(u_next[2], i, turn)
+    store_of(u_next, U(0), i, x)
+    store_of(u_next, U(1), i, y)
+    store_of(u_next, U(2), i, turn)

@@ -40,20 +40,29 @@ class DiskMemories:
         slot = layout.slot[nodes]
         block = int(slot.min()) // LANES
         end = int(rows.group_block[-1]) if isinstance(rows, LaneRows) else -(-(int(slot.max()) + 1) // LANES)
-        layers = np.zeros(layout.count, dtype=np.uint8)
-        layers[slot] = layer
-        empty = np.ones(layout.count, dtype=bool)
-        empty[slot] = False
+        self._slot, self._count = slot - LANES * block, factors.shape[2]
+        layers = np.zeros(LANES * (end - block), dtype=np.uint8)
+        layers[self._slot] = layer
+        kinds, kind = np.unique(layers.view(np.uint64), return_inverse=True)  # of blocks: eight layers
+        each = np.moveaxis(factors[kinds.view(np.uint8).reshape(-1, LANES)], 1, -1)
+        own = aligned_zeros(*each.shape)
+        own[...] = each
         special = np.zeros(-(-layout.count // LANES), dtype=np.uint8)
         special[np.union1d(supported, crossing.target) // LANES] = 1
-        inner, unused = (each[LANES * block : LANES * end].reshape(-1, LANES) for each in (layers, empty))
-        inner[unused] = np.repeat(np.where(unused, 0, inner).max(axis=1), unused.sum(axis=1))
-        special[block:end] |= 2 * (inner.min(axis=1) != inner.max(axis=1)).astype(np.uint8)
-        self._slot = slot - LANES * block
-        memory = aligned_zeros(3 * factors.shape[2], LANES * (end - block))
-        force = aligned_zeros(3, layout.count)
-        rest, held = np.zeros((3, 0)), np.zeros(1)
-        self.arrays = Memories(block, layers, special, factors, memory, rest, force, held, crossing, drag)
+        self.arrays = Memories(
+            mechanisms=tuple(np.zeros(self._count).tolist()),
+            block=block,
+            kind=np.concatenate([np.zeros(block), kind.ravel()]).astype(np.uint32),
+            special=special,
+            factors=own.reshape(-1),
+            memory=aligned_zeros(3 * self._count * LANES * (end - block)),
+            rest=np.zeros((3, 0)),
+            force=aligned_zeros(3, layout.count),
+            held=np.zeros(1),
+            fading=np.zeros(1, dtype=np.uint8),
+            crossing=crossing,
+            drag=drag,
+        )
 
     def rest_at(self, u: np.ndarray, force: np.ndarray) -> None:
         """Remember only differences from contact forces (3, slots) at rest, at displacements u (3, slots)."""
@@ -64,13 +73,20 @@ class DiskMemories:
         remember_crossing(crossing._replace(factors=factors, memory=memory, rest=np.zeros_like(rest), taken=rest), u, u)
         self.arrays = self.arrays._replace(rest=force, crossing=crossing._replace(rest=rest))
 
+    @property
+    def _blocks(self) -> np.ndarray:
+        """The memories (blocks, 3, K, 8), a view."""
+        return self.arrays.memory.reshape(-1, 3, self._count, LANES)
+
     def saved_arrays(self) -> Arrays:
-        """The memories (3K, m) of the disks, and (t, 3, K) of contacts between layers."""
-        return {"memory": np.take(self.arrays.memory, self._slot, axis=1), "crossing": self.arrays.crossing.memory}
+        """The memories (m, 3, K) of the disks, and (t, 3, K) of contacts between layers."""
+        block, lane = np.divmod(self._slot, LANES)
+        return {"memory": self._blocks[block, :, :, lane], "crossing": self.arrays.crossing.memory}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self.arrays.memory[:, self._slot] = saved["memory"]
+        block, lane = np.divmod(self._slot, LANES)
+        self._blocks[block, :, :, lane] = saved["memory"]
         self.arrays.crossing.memory[...] = saved["crossing"]
 
 

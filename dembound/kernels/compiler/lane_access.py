@@ -50,9 +50,18 @@ def load_of(table: np.ndarray, row: int, at: At) -> np.ndarray:
     return load(table[int(row)], at)
 
 
+def fetch(array: np.ndarray, at: int) -> None:
+    """Ask for eight doubles of a contiguous array (n,), or beyond its end, that are soon loaded; changes nothing."""
+
+
 def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
     """Write eight doubles to a contiguous array (n,)."""
     array[_all_of(at)] = values
+
+
+def store_of(table: np.ndarray, row: int, at: At, values: np.ndarray) -> None:
+    """Write eight doubles to a row of a contiguous array (m, n)."""
+    store(table[int(row)], at, values)
 
 
 def store_some(array: np.ndarray, at: At, values: np.ndarray, chosen: int) -> None:
@@ -158,6 +167,14 @@ def _load_indices_at(builder: Any, first: Any, at: Any) -> Any:
     return builder.zext(gathered(builder, first, at), INDICES)
 
 
+@compiled_as(fetch, types.void, _array, types.uint64)
+def _fetch(builder: Any, first: Any, i: Any) -> None:
+    place, word = builder.bitcast(builder.gep(first, [i]), ir.IntType(8).as_pointer()), ir.IntType(32)
+    signed = ir.FunctionType(ir.VoidType(), [place.type, word, word, word])
+    prefetch = cgutils.get_or_insert_function(builder.module, signed, "llvm.prefetch.p0")
+    builder.call(prefetch, [place, word(1), word(3), word(1)])  # to be written, into all caches, data
+
+
 @compiled_as(store, types.void, _array, types.uint64, lanes)
 def _store(builder: Any, first: Any, i: Any, values: Any) -> None:
     builder.store(values, _place(builder, first, i, DOUBLES), align=8)
@@ -192,15 +209,18 @@ def _row_of(builder: Any, table: Any, row: Any) -> Any:
     return builder.gep(first, [builder.mul(row, builder.extract_value(shape, 1))])
 
 
-for _kind, _loaded, _stored in (
-    (types.uint64, _load, _store_some),
-    (indices, gathered, _store_some_at),
+for _kind, _loaded, _stored, _some_stored in (
+    (types.uint64, _load, _store, _store_some),
+    (indices, gathered, _store_at, _store_some_at),
 ):
     compiled_as(load_of, lanes, _table, types.uint64, _kind)(
         lambda builder, table, row, at, of=_loaded: of(builder, _row_of(builder, table, row), at)
     )
-    compiled_as(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
+    compiled_as(store_of, types.void, _table, types.uint64, _kind, lanes)(
         lambda builder, table, row, *more, of=_stored: of(builder, _row_of(builder, table, row), *more)
+    )
+    compiled_as(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
+        lambda builder, table, row, *more, of=_some_stored: of(builder, _row_of(builder, table, row), *more)
     )
 
 

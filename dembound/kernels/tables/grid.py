@@ -146,21 +146,25 @@ class Drag(NamedTuple):
 class Memories(NamedTuple):
     """Memories of the contact forces of a part, in blocks of eight slots from number `block` on.
 
-    layer : (slots,) uint8, row of each disk in factors (layers, 2, K), e and g of the mechanisms. special : (blocks,)
-    uint8 of the scene, 1 for blocks with supported disks or contacts between layers, 2 more for those with disks of
-    several layers. memory : (3K, n) N and N·m, component by component. rest : (3, slots) contact forces at rest, which
-    nothing remembers, or (3, 0) for none. force (3, slots), held (1,) : work space. crossing : of contacts between
-    layers. drag : NoDrag, or Drag, which is not remembered.
+    mechanisms : K numbers, only used for their count K, which is known when a kernel is compiled. kind : (blocks,)
+    uint32 of the scene, row of each block in factors (kinds·2·K·8,), e, then g of the mechanisms of its disks.
+    special : (blocks,) uint8 of the scene, 1 for blocks with supported disks or contacts between layers. memory :
+    (n/8·3·K·8,) N and N·m, of each block component by component, of each mechanism by mechanism. rest : (3, slots)
+    contact forces at rest, which nothing remembers, or (3, 0) for none. force (3, slots), held (1,), fading (1,) uint8,
+    whether small memories become zero in this step : work space. crossing : of contacts between layers. drag : NoDrag,
+    or Drag, which is not remembered.
     """
 
+    mechanisms: tuple[float, ...]
     block: int
-    layer: np.ndarray
+    kind: np.ndarray
     special: np.ndarray
     factors: np.ndarray
     memory: np.ndarray
     rest: np.ndarray
     force: np.ndarray
     held: np.ndarray
+    fading: np.ndarray
     crossing: Crossing
     drag: NoDrag | Drag
 

@@ -43,23 +43,33 @@ def stepped(scene, layers, layer: np.ndarray, first: np.ndarray) -> tuple[np.nda
             kind[3] = e * r + g * f
             total += f
             lost += r.sum(axis=0)
-        now = v + STEP * (total - lost) / inertia
+        now = (v + STEP * (total - lost) / inertia) * scene.moves
         taken += 0.5 * STEP * float(np.sum(lost * (v + now)))
         u, v = u + STEP * now, now
     return u, taken
 
 
-@pytest.mark.parametrize("size", [[4.0, 4.0], [32.0, 8.0]], ids=["one by one", "rows of copies"])
-def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list[float]) -> None:
+@pytest.mark.parametrize(
+    ("size", "held"),
+    [([4.0, 4.0], []), ([32.0, 8.0], []), ([32.0, 8.0], ["y"])],
+    ids=["one by one", "rows of copies", "held along y"],
+)
+def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list[float], held: list[str]) -> None:
     """Two layers of unlike damping, one disk after the other, are as mixed as layers can be."""
-    changes = {**BODY, "boundary": {}, "packing": GRAINS | {"size": size}, "material.quality_factor": 5.0}
+    changes = {
+        **BODY,
+        "boundary": {},
+        "packing": GRAINS | {"size": size},
+        "material.quality_factor": 5.0,
+        "motion.held": held,
+    }
     scene = build(bar(changes))
     soft, stiff = fitted(5.0, (1.0, 50.0), 10.0, 3), fitted(40.0, (1.0, 50.0), 10.0, 2)
     layers = [soft, stiff, None]
     layer = np.random.default_rng(1).integers(0, len(layers), scene.count)
     monkeypatch.setattr(damped_ground, "layers_of", lambda scene, nodes: (layers, layer[nodes].astype(np.uint8)))
     simulation = Simulation(scene, STEP)
-    first = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count))
+    first = np.random.default_rng(2).normal(0.0, 1e-3, (3, scene.count)) * scene.moves
     simulation.state.velocity = first
     simulation.run(STEPS)
     expected, taken = stepped(scene, layers, layer, first)
@@ -67,6 +77,23 @@ def test_a_damped_body_moves_as_its_arithmetic_says(bar, monkeypatch, size: list
     # each sum of some fifty products is rounded by 1e-15 of its terms, in every step
     assert np.abs(simulation.state.displacement - expected).max() < STEPS * 1e-14 * np.abs(expected).max()
     assert simulation.state.work[0, 1] == pytest.approx(taken, rel=1e-10)
+    (part,) = simulation.system.parts
+    assert part.memories.saved_arrays()["memory"].any(axis=(0, 2)).tolist() == [True, "y" not in held, True]
+
+
+@pytest.mark.parametrize("extent", [[4.0, 4.0], [32.0, 8.0]], ids=["one by one", "rows of copies"])
+def test_small_memories_become_zero_at_every_256th_step(bar, extent: list[float]) -> None:
+    scene = build(bar({**BODY, "boundary": {}, "packing": GRAINS | {"size": extent}, "material.quality_factor": 5.0}))
+    simulation = Simulation(scene, STEP)
+    (part,) = simulation.system.parts
+    memory = part.memories.arrays.memory
+    left = []
+    for steps, size in ((1, 1e-250), (255, 1e-250), (1, 1e-250), (256, 1e-180)):  # steps 0, 255, 256 and 512 are last
+        memory[:] = size
+        simulation.advance(steps)
+        left.append(bool(memory.any()))
+
+    assert left == [False, True, False, True]
 
 
 @pytest.mark.parametrize("boundary", ["outside", "free_field"])
