@@ -29,9 +29,12 @@ LONGEST, PART = 12.0, 0.2
 """CPU seconds after which a search for all bounds ends, or this part of the given run if that is more, as counted: not
 measured, so that it finds the same on every machine. Each bound may take what those before have left of its part."""
 
-PER_FACTOR, PER_CHOICE, PER_ERROR, PER_DISK, PER_STEP = 0.2, 0.1, 0.12, 8e-6, 5e-8
+PER_FACTOR, PER_CHOICE, PER_DISK, PER_STEP = 0.2, 0.1, 8e-6, 5e-8
 """CPU seconds of counting the costs of all choices with disks of one diameter, of building a choice, also one that
-cannot run, of finding its error, of building it by disk, and of its companions by particle-step."""
+cannot run, of building it by disk, and of its companions by particle-step."""
+
+PER_ERROR, PER_SAMPLE = 0.12, 8e-7
+"""CPU seconds of finding the error of a choice, and by step of its motion and monitor."""
 
 CUT = f"; the search ended early: it may take {LONGEST:g} s, or {percent(PART)} of the run or of --longest"
 """Note on a choice that does not keep a bound, where the search ended for lack of time."""
@@ -82,6 +85,11 @@ class Candidates:
         self.options.bound = self.bound = bound
         self.begun, self.was_cut, self._options = self.begun + 1, False, {}
 
+    @cached_property
+    def per_error(self) -> float:
+        """CPU seconds of finding the error of a choice: the longer the motion at the monitors, the more."""
+        return PER_ERROR + PER_SAMPLE * self.planned.steps * len(self.planned.scene.monitors)
+
     @property
     def most(self) -> float:
         """CPU seconds that the search may have taken after the present bound."""
@@ -91,7 +99,7 @@ class Candidates:
         """Whether the search has time left for a choice."""
         option = option_of(item)
         packing = option.case.packing
-        spent = self.spent + PER_ERROR + PER_STEP * self.runner.work
+        spent = self.spent + self.per_error + PER_STEP * self.runner.work
         if not isinstance(item, Built):
             spent += PER_CHOICE + PER_DISK * packing.about(packing.extent)
         return spent <= self.most

@@ -17,7 +17,7 @@ import numpy as np
 
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, digest
-from dembound.accuracy.of_disks.candidates import CUT, PER_ERROR, Candidates, option_of
+from dembound.accuracy.of_disks.candidates import CUT, Candidates, option_of
 from dembound.accuracy.of_disks.causes import (
     PLACES,
     causes_of_choice,
@@ -231,7 +231,7 @@ class Search:
         if same is None or not self.candidates.affords(same) or (built := self.candidates.built(same)) is None:
             return
         scene = built.planned.scene
-        self.candidates.spent += PER_ERROR
+        self.candidates.spent += self.candidates.per_error
         with suppress(DemboundError):
             self._note_sides(
                 option, [sides_cause(self.companions, scene, built.planned.time_step, option.wider)], scene
@@ -263,7 +263,7 @@ class Search:
                 left.append(built)
                 return []
             self.tried += 1
-            self.candidates.spent += PER_ERROR
+            self.candidates.spent += self.candidates.per_error
             causes = causes_of_choice(self.companions, scene, step, option.wider, ground)
             causes += rest_causes(self.companions, scene)
         except DemboundError:
