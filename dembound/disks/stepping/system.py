@@ -19,7 +19,7 @@ from dembound.kernels.common import BROKE, LAW_ENDS
 from dembound.kernels.follower import turn_forces
 from dembound.motion.state import Arrays, State, arrays_of_owner
 
-LOOK = 64
+LOOK = 32
 """Steps between two looks at what has broken off, or opened near ties."""
 
 
