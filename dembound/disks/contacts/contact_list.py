@@ -169,7 +169,7 @@ class ContactList(RenewedList):
         number[kept] = np.arange(len(kept))
         first, second = (number[particles] for particles in other.pairs)
         left = (first >= 0) & (second >= 0)
-        self._constants = other._constants
+        self._constants = other._constants.copy()
         slots = other._slot[kept] - other._slots.start
         self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
@@ -205,7 +205,7 @@ class ContactList(RenewedList):
         """The pairs with their history, and cracks not yet recorded, for a checkpoint."""
         self.note_cracks()
         saved = {name: self.of(name) for name in _KEPT} | {"force": self.force}
-        saved |= {"image": self.image, "constants": self._constants}
+        saved |= {"image": self.image, "constants": self._constants.copy()}
         saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
             saved["drag"] = self.drag
@@ -220,7 +220,7 @@ class ContactList(RenewedList):
             raise ValueError("constants of contacts are of another law")
         if saved["contact_type"].max(initial=0) >= max(len(saved["constants"]), 1):
             raise ValueError("contacts have types without constants")
-        self._constants = saved["constants"]
+        self._constants = saved["constants"].copy()
         slots = self._slot - self._slots.start
         self._set_origin(saved["origin"][:, slots], saved["skins"][slots])
         self.keeps_slip = bool(saved["keeps_slip"])
