@@ -8,24 +8,24 @@ from dembound.casefile.disks.static import can_break
 from dembound.disks.scene import DiskScene
 from dembound.motion.kind import Slower
 
-ELASTIC_NODE, ABSORBING_NODE, TIE = 7.0, 12.0, 20.0
+ELASTIC_NODE, ABSORBING_NODE, TIE = 6.3, 12.0, 19.0
 """Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, outside and inside of layers.
 
 Ties are those of random packings; a tie of a lattice, which acts on the nodes of edges only, takes 15."""
 
-BROKEN = 420.0
+BROKEN = 95.0
 """Nanoseconds of a step of a disk of ground all broken: pairs one by one, listed anew as disks fly."""
 
 DRIVE = 18.0
 """Nanoseconds of a force by which an oblique wave enters (cases/oblique.toml, 772 of them)."""
 
-DISK = {(True, False): 4.3, (False, False): 19.0, (True, True): 16.0, (False, True): 49.0}
+DISK = {(True, False): 4.3, (False, False): 18.0, (True, True): 16.0, (False, True): 43.0}
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
-DASHPOTS = 31.0
+DASHPOTS = 2.8
 """Nanoseconds of a step of a disk by dashpots of its contacts, which are computed one by one."""
 
-DAMPED = 3.9
+DAMPED = 2.7
 """Nanoseconds of a step of a disk by three mechanisms of damping."""
 
 
