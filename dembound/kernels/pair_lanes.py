@@ -111,7 +111,7 @@ def _slide(way, arms, at, v):
 
 
 @njit(**INLINED)
-def _contact(law, at, way, arms, overlap, shear, opening, v, step, exists, contacts, limits, taken):
+def _contact(law, at, overlap, shear, opening, sliding, step, exists, contacts, limits, taken):
     """Normal and shear force of contacts; their slip and whether they push are stored."""
     (k, _, q, kind, _), (c, _, _) = law, at
     slip = load(contacts.slip, c)
@@ -130,13 +130,13 @@ def _contact(law, at, way, arms, overlap, shear, opening, v, step, exists, conta
         note_some(contacts.closed, c, np.uint8(was & ~now), np.uint8(~was & ~now), exists)
     slid = slip
     if slips_by_overlap(limits):
-        earlier = shear - step * _slide(way, arms, at, v)
+        earlier = shear - step * sliding
         slid = slip_after(limits, k, q, overlapped, overlap, earlier, slip)
         S = shear_of(limits, k, q, overlap, shear, slid)
     most = most_shear(limits, kind, N)
     stays = at_most(magnitude(S), most)
     if slips_by_overlap(limits) or (byte_of(stays) & exists) != exists:
-        earlier = shear - step * _slide(way, arms, at, v)
+        earlier = shear - step * sliding
         before = shear_of(limits, k, q, overlapped, earlier, slip)
         S = choose(stays, S, with_sign(most, S))
         slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
@@ -149,10 +149,9 @@ def _contact(law, at, way, arms, overlap, shear, opening, v, step, exists, conta
 
 
 @njit(**INLINED)
-def _resist(law, at, way, arms, overlap, opening, v, step, exists, contacts, limits, taken):
+def _resist(law, at, overlap, opening, sliding, step, exists, contacts, limits, taken):
     """Forces of dashpots, see `contacts.resistance`; what they take is added to taken."""
     (k, _, q, _, _), (c, _, _), drag = law, at, contacts.drag
-    sliding = _slide(way, arms, at, v)
     viscosities = load_of(contacts.viscosity, U(0), c), load_of(contacts.viscosity, U(1), c)
     push, rub = resistance(limits, k, q, overlap, viscosities, opening, sliding)
     loss = 0.5 * step * ((load_of(drag, U(1), c) + rub) * sliding - (load_of(drag, U(0), c) + push) * opening)
@@ -177,7 +176,7 @@ def _reference(law, at, way, u):
 
 @njit(**INLINED)
 def _updated(law, at, u, v, step, contacts):
-    """Normals, arms, stretch and shear where normals and arms follow the motion, see pair_strain.updated_strain."""
+    """Normals, arms, stretch, shear and its rate where both first follow the motion, see pair_strain.updated_strain."""
     (k, began, q, _, _), (c, _, _) = law, at
     dx, dy = _apart(u, at)
     x = k[q, P.x] + dx
@@ -188,8 +187,9 @@ def _updated(law, at, u, v, step, contacts):
     way = x * inverse, y * inverse
     arm_i = 0.5 * distance + k[q, P.offset]
     arms = arm_i, distance - arm_i
-    shear = load(contacts.shear, c) + step * _slide(way, arms, at, v)
-    return way[0], way[1], arms[0], arms[1], stretch + began_with(began, q, U(0)), shear
+    sliding = _slide(way, arms, at, v)
+    shear = load(contacts.shear, c) + step * sliding
+    return way[0], way[1], arms[0], arms[1], stretch + began_with(began, q, U(0)), shear, sliding
 
 
 @njit(**INLINED)
@@ -206,10 +206,11 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
         follows = now == 0
         if follows:
             now = left
-            nx, ny, arm_i, arm_j, stretch, shear = _updated(law, at, u, v, step, contacts)
+            nx, ny, arm_i, arm_j, stretch, shear, sliding = _updated(law, at, u, v, step, contacts)
         else:
             one, other, stretch, shear = _reference(law, at, way, u)
             nx, ny, arm_i, arm_j = _lanes(way[0]), _lanes(way[1]), _lanes(one), _lanes(other)
+            sliding = _slide((nx, ny), (arm_i, arm_j), at, v)
         left = np.uint8(left & ~now)
         dvx, dvy = _apart(v, at)
         opening = nx * dvx + ny * dvy
@@ -231,9 +232,8 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
                 now, intact = np.uint8(now & ~broken), np.uint8(intact & ~broken)
             pull, side, moment = choose(whole, pull, 0.0), choose(whole, side, 0.0), choose(whole, moment, 0.0)
         overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
-        normals, arms = (nx, ny), (arm_i, arm_j)
         if has_contact:
-            N, S = _contact(law, at, normals, arms, overlap, shear, opening, v, step, now, contacts, limits, taken)
+            N, S = _contact(law, at, overlap, shear, opening, sliding, step, now, contacts, limits, taken)
             pull -= N
             side += S
         if follows:
@@ -243,7 +243,7 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
                 store_some(contacts.slip, c, splat(0.0), gone)
             _put(contacts.shear, c, shear, now)
         if contacts.viscosity.shape[1] > 0:
-            push, rub = _resist(law, at, normals, arms, overlap, opening, v, step, now, contacts, limits, taken)
+            push, rub = _resist(law, at, overlap, opening, sliding, step, now, contacts, limits, taken)
             pull -= push
             side += rub
         force = contacts.force
