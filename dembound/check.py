@@ -116,7 +116,7 @@ def duration_in_words(seconds: float) -> str:
 
 
 def _range_in_words(least: float, most: float, words: str) -> str:
-    """Seconds of a run at the pace of its first steps and at its slowest, as "about 20 s intact, about 6 min …"."""
+    """Seconds of a run at the pace of its first steps and at its slowest, in words; one number if they are alike."""
     low, high = duration_in_words(least), duration_in_words(most)
     return low if low == high else f"{low} at the pace of the first steps, {high} {words}"
 

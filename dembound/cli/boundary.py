@@ -110,15 +110,8 @@ def boundary(
     parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
     given, hertz = sorted(set(angles or ())), sorted(set(frequencies or ()))
     count, asked = len(hertz) or FREQUENCIES, (len(given) or len(ANGLES)) if not types else len(given or COMPARED)
-    each = seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
-    if not quick and each * count > longest:
-        needed = math.ceil(each * count)  # rounded up, so that the option as said allows it
-        fewer, all_of = int(longest / each), f"{count} frequencies take about {needed} s of CPU time"
-        if hertz or types or fewer < 1:
-            fit = f"at most {longest:g} s are allowed; --longest {needed} allows it"
-            raise CaseError([f"boundary: {all_of}, {fit}, --quick takes less, --side measures one side"])
-        err.print(f"{loaded.name}: {all_of}, so {fewer} are measured; --longest {needed} measures all")
-        count = fewer
+    each = 0.0 if quick else seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
+    count = _within(longest, count, each, loaded.name, may_be_fewer=not (hertz or types))
     for side, layer in parts:
         report = _report(side if layer is None else f"{side}, in {layer}")
         if types:
@@ -179,6 +172,22 @@ def _compared(found: dict[str, Reflections], arrivals: list[Arrival], title: str
     }
     spectra = {kind.upper(): amplitudes(signal, frequencies) for kind, signal in signals.items()}
     return plot_types(frequencies, drawn, spectra, title)
+
+
+def _within(longest: float, count: int, each: float, name: str, *, may_be_fewer: bool) -> int:
+    """Frequencies out of `count`, which take so many CPU seconds each, that are measured within a time (s).
+
+    Says if they are fewer; CaseError where they may not be, or none is left.
+    """
+    if each * count <= longest:
+        return count
+    needed = math.ceil(each * count)  # rounded up, so that the option as said allows it
+    fewer, all_of = int(longest / each), f"{count} frequencies take about {needed} s of CPU time"
+    if fewer < 1 or not may_be_fewer:
+        fit = f"at most {longest:g} s are allowed; --longest {needed} allows it"
+        raise CaseError([f"boundary: {all_of}, {fit}, --quick takes less, --side measures one side"])
+    err.print(f"{name}: {all_of}, so {fewer} are measured; --longest {needed} measures all")
+    return fewer
 
 
 def _report(side: str) -> Callable[[float], None]:

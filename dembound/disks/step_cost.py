@@ -14,7 +14,7 @@ ELASTIC_NODE, ABSORBING_NODE, TIE = 6.3, 12.0, 19.0
 Ties are those of random packings; a tie of a lattice, which acts on the nodes of edges only, takes 15."""
 
 BROKEN = 95.0
-"""Nanoseconds of a step of a disk of ground all broken: pairs one by one, listed anew as disks fly."""
+"""Nanoseconds of a step of a disk of ground all broken, whose pairs are listed anew as disks fly."""
 
 DRIVE = 18.0
 """Nanoseconds of a force by which an oblique wave enters (cases/oblique.toml, 772 of them)."""
@@ -23,7 +23,7 @@ DISK = {(True, False): 4.3, (False, False): 18.0, (True, True): 16.0, (False, Tr
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
 DASHPOTS = 2.8
-"""Nanoseconds of a step of a disk by dashpots of its contacts, which are computed one by one."""
+"""Nanoseconds of a step of a disk by dashpots of its contacts."""
 
 DAMPED = 2.7
 """Nanoseconds of a step of a disk by three mechanisms of damping."""

@@ -98,6 +98,17 @@ def resistance(limits, constants, k, overlap, viscosities, opening, sliding):
 
 
 @njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
+def _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost):
+    """Forces of the dashpots of pair c, see `resistance`; lost (5,) is advanced by what they take."""
+    viscous, drag = contacts.viscosity, contacts.drag
+    viscosities = viscous[U(0), c], viscous[U(1), c]
+    push, rub = resistance(limits, contacts.constants, k, overlap, viscosities, opening, sliding)
+    lost[4] += 0.5 * step * ((drag[U(1), c] + rub) * sliding - (drag[U(0), c] + push) * opening)
+    drag[U(0), c], drag[U(1), c] = push, rub
+    return push, rub
+
+
+@njit(**FAST, forceinline=True)
 def push_pair(c, u, v, step, number, contacts, limits, lost):
     """Force of pair c alone; lost (5,) is advanced, see `single_pairs.push`."""
     first, second, contact_type = contacts.first, contacts.second, contacts.contact_type
@@ -173,12 +184,8 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             lost[1 if broken > 0.0 else 2] += broken
             lost[3] += 1.0
     if contacts.viscosity.shape[1] > 0:
-        viscous, drag = contacts.viscosity, contacts.drag
         sliding = slide(i, j, k, nx, ny, distance, v, constants)
-        viscosities = viscous[U(0), c], viscous[U(1), c]
-        push, rub = resistance(limits, constants, k, overlap, viscosities, opening, sliding)
-        lost[4] += 0.5 * step * ((drag[U(1), c] + rub) * sliding - (drag[U(0), c] + push) * opening)
-        drag[U(0), c], drag[U(1), c] = push, rub
+        push, rub = _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost)
         pull -= push
         S += rub
     force[U(0), c] = pull * nx - S * ny

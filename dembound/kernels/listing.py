@@ -14,17 +14,17 @@ NEW = -1
 
 @njit(**MAKES)
 def keys_of(first, second, images, span):
-    """Keys (b,) int64 of pairs, see near.near_keys, and whether (b,) they are from the second disk to the first.
+    """Keys (b,) int64 of pairs, see near.near_keys, whichever disk is the first.
 
     first, second (b,) disks numbered up to span − 1; images (b, 2) : periods from the first to the second.
     """
-    keys, turned = np.empty(first.size, np.int64), np.empty(first.size, np.bool_)
+    keys = np.empty(first.size, np.int64)
     for k in range(first.size):
         i, j, x, y = np.int64(first[k]), np.int64(second[k]), images[k, 0], images[k, 1]
         code = 3 * (x + 1) + y + 1
-        turned[k] = i > j or (i == j and (x < 0 or (x == 0 and y < 0)))
-        keys[k] = (j * span + i) * CODES + reversed_code(code) if turned[k] else (i * span + j) * CODES + code
-    return keys, turned
+        turned = i > j or (i == j and (x < 0 or (x == 0 and y < 0)))
+        keys[k] = (j * span + i) * CODES + reversed_code(code) if turned else (i * span + j) * CODES + code
+    return keys
 
 
 @njit(**MAKES)

@@ -75,15 +75,6 @@ _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY
 
 
 @njit(**INLINED)
-def _put(array, c, values, exists):
-    """Write numbers of those pairs that exist to an array (b,)."""
-    if exists == ALL:
-        store(array, c, values)
-    else:
-        store_some(array, c, values, exists)
-
-
-@njit(**INLINED)
 def _lanes(numbers):
     """A number in all lanes, or lanes themselves."""
     return splat(0.0) + numbers
@@ -142,7 +133,7 @@ def _contact(law, at, overlap, shear, opening, sliding, step, exists, contacts, 
         slid = choose(stays, slid, slip_at(limits, k, q, overlap, shear, S))
         loss = rubbed(limits, k, q, overlapped, overlap, earlier, shear, slip, slid, before, S)
         loss = choose(bits(exists), loss, 0.0)
-        _put(contacts.slip, c, slid, exists)
+        store_some(contacts.slip, c, slid, exists)
         _add(taken, 0, larger(loss, 0.0))
         _add(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
     return N, S
@@ -176,7 +167,7 @@ def _reference(law, at, way, u):
 
 @njit(**INLINED)
 def _updated(law, at, u, v, step, contacts):
-    """Normals, arms, stretch, shear and its rate where both first follow the motion, see pair_strain.updated_strain."""
+    """Normals and arms that follow the motion, stretch, shear and its rate, see pair_strain.updated_strain."""
     (k, began, q, _, _), (c, _, _) = law, at
     dx, dy = _apart(u, at)
     x = k[q, P.x] + dx
@@ -241,7 +232,7 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
             if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
                 shear = choose(bits(gone), 0.0, shear)
                 store_some(contacts.slip, c, splat(0.0), gone)
-            _put(contacts.shear, c, shear, now)
+            store_some(contacts.shear, c, shear, now)
         if contacts.viscosity.shape[1] > 0:
             push, rub = _resist(law, at, overlap, opening, sliding, step, now, contacts, limits, taken)
             pull -= push

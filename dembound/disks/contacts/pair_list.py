@@ -5,7 +5,7 @@ import numpy as np
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.pair_rows import PairPlan
 from dembound.disks.contacts.pairs import acting
-from dembound.disks.contacts.placing import ContactHistory, Pairs, in_places
+from dembound.disks.contacts.placing import ContactHistory, Pairs, in_places, numbers_of
 from dembound.disks.material.constants import BondFactors
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import REACHED
@@ -76,7 +76,6 @@ class PairList:
     dashpots: Dashpots | None
     bonds: np.ndarray
     _constants: np.ndarray
-    _sorted: np.ndarray
 
     def __init__(
         self, assembly: Assembly, periods: tuple[float | None, float | None], begin: int, layout: Layout | None
@@ -89,7 +88,6 @@ class PairList:
         self._slots = slice(int(self._slot.min()), int(self._slot.max()) + 1)
         self._ranks = np.argsort(self._slot)  # particles by their slots
         self._plan: PairPlan | None = None
-        self._sorted_for: np.ndarray | None = None
         self.rows: PairRows | None = None
 
     def spread(self, displacement: np.ndarray) -> np.ndarray:
@@ -128,11 +126,13 @@ class PairList:
 
         Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
         """
-        keys, _ = keys_of(self._slot[first], self._slot[second], self.images(first, second, vectors), self._slots.stop)
-        at = np.searchsorted(self._keys, keys, sorter=self._by_key)
-        at = self._by_key[np.minimum(at, len(self._keys) - 1)] if len(self._keys) > 0 else np.full(len(keys), -1)
-        listed = (at >= 0) & (self._keys[at] == keys) if len(self._keys) > 0 else at >= 0
-        return listed, np.where(listed, at, -1)
+        keys = self._keys_of(first, second, self.images(first, second, vectors))
+        at = numbers_of(keys, self._keys, np.argsort(self._keys))
+        return at >= 0, at
+
+    def _keys_of(self, first: np.ndarray, second: np.ndarray, images: np.ndarray) -> np.ndarray:
+        """Keys (b,) of pairs of particles, see near.near_keys, by their slots."""
+        return keys_of(self._slot[first], self._slot[second], images, self._slots.stop)
 
     def reached(self) -> tuple[np.ndarray, np.ndarray]:
         """First and second particle (b,) of the bonds that have reached their strength, but never break."""
@@ -180,22 +180,12 @@ class PairList:
             self.extra = aligned_zeros(3, self.layout.count)
         self._note_strays()
 
-    @property
-    def _by_key(self) -> np.ndarray:
-        """The order (b,) of the pairs by their keys, made when it is needed."""
-        if self._sorted_for is not self._keys:
-            self._sorted_for, self._sorted = self._keys, np.argsort(self._keys, kind="stable")
-        return self._sorted
-
     def _note_strays(self) -> None:
         """Find the disks with ends of pairs in no row, beside rows of copies."""
         if self._plan is not None:
-            slots = np.flatnonzero(np.diff(self.arrays.start))
-            self.strays = (
-                slots,
-                np.append(self.arrays.start[slots], len(self.arrays.end)).astype(np.int64),
-                self.arrays.end,
-            )
+            start, end = self.arrays.start, self.arrays.end
+            slots = np.flatnonzero(np.diff(start))
+            self.strays = slots, np.append(start[slots], len(end)).astype(np.int64), end
 
     def _factors(self, factors: BondFactors) -> np.ndarray:
         """Factors of the strengths of the bonds in all places of `arrays`, 1 where there is none."""

@@ -37,9 +37,7 @@ class Pairs:
 class ContactHistory(NamedTuple):
     """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
 
-    kept : None where all bonds may break.
-
-    force (b, 4), and drag (b, 2) N, see `Contacts`; None without, or before they have acted.
+    kept : None where all bonds may break. force (b, 4), and drag (b, 2) N; None before they have acted.
     """
 
     state: np.ndarray
@@ -68,6 +66,14 @@ class Placed(NamedTuple):
     keys: np.ndarray
 
 
+def numbers_of(keys: np.ndarray, among: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Number (k,) of each key among others (b,), in the order (b,) of which these ascend; −1 for none."""
+    if len(among) == 0:
+        return np.full(len(keys), -1)
+    at = order[np.minimum(np.searchsorted(among, keys, sorter=order), len(among) - 1)]
+    return np.where(among[at] == keys, at, -1)
+
+
 SPARE = 8
 """One in so many places for pairs in no row is spare at least, for pairs that are met."""
 
@@ -85,7 +91,7 @@ def in_places(
     in_rows = np.full(len(first), -1)
     if plan is not None:
         in_rows = plan.place(pairs.first, pairs.second, pairs.contact_type)
-    keys, _ = keys_of(first, second, pairs.image, stop)
+    keys = keys_of(first, second, pairs.image, stop)
     order = np.argsort(np.where(in_rows >= 0, in_rows - 2**62, keys), kind="stable")
     first, second, in_rows, keys = first[order], second[order], in_rows[order], keys[order]
     places = 0 if plan is None else plan.count

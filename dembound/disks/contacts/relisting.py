@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 
 from dembound.disks.contacts.pair_list import NO_LIMITS, PairList
-from dembound.disks.contacts.placing import SPARE, ContactHistory, Pairs, with_ends
+from dembound.disks.contacts.placing import SPARE, ContactHistory, Pairs, numbers_of, with_ends
 from dembound.disks.contacts.skins import skins_of
 from dembound.disks.material.constants import shared_constants
 from dembound.kernels import contacts as kernel
 from dembound.kernels.contacts import NONE, SHEAR
-from dembound.kernels.listing import keys_of, merged
+from dembound.kernels.listing import merged
 from dembound.kernels.near import near_keys, pairs_of, room
 from dembound.motion.part import Cracks
 from dembound.pairwise import STRAIN, of_law
@@ -79,10 +79,6 @@ class RenewedList(PairList):
         """Places of the pairs in no row."""
         return slice(int(self.arrays.bound[0]), int(self.arrays.bound[-1]))
 
-    def _keys_of(self, first: np.ndarray, second: np.ndarray, images: np.ndarray) -> np.ndarray:
-        """Keys (b,) of pairs of particles, see near.near_keys, by their slots."""
-        return keys_of(self._slot[first], self._slot[second], images, self._slots.stop)[0]
-
     def _near(self, moved: np.ndarray, skins: np.ndarray) -> np.ndarray:
         """Keys of pairs with gaps up to the sum of their skins (slots,) m, of particles that moved (m, 2) m."""
         ranks, radii = self._ranks, self.assembly.radii[self._ranks]
@@ -101,10 +97,8 @@ class RenewedList(PairList):
         both, image = pairs_of(keys, self._slots.stop)
         first, second = (self.layout.node[both] - self.nodes.start).T
         kind, built = np.zeros(len(keys), dtype=np.int64), self._built
-        at = np.searchsorted(self._built_keys, keys, sorter=self._built_order)
-        own = self._built_order[np.minimum(at, len(self._built_order) - 1)] if len(self._built_order) > 0 else at
-        parted = self._built_keys[own] == keys if len(self._built_order) > 0 else np.zeros(len(keys), dtype=np.bool_)
-        own = own[parted]
+        at = numbers_of(keys, self._built_keys, self._built_order)
+        parted, own = at >= 0, at[at >= 0]
         first[parted], second[parted], image[parted] = built.first[own], built.second[own], built.image[own]
         kind[parted] = built.contact_type[own]
         new = ~parted

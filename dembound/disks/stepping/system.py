@@ -141,7 +141,12 @@ class DiskSystem(RecordedDisks):
             )
             self._let_go()
         super().react(why, steps, state)
-        if self.near_ties is not None and looks:
+        if looks:
+            self.look_near_ties(state)
+
+    def look_near_ties(self, state: State) -> None:
+        """Note contacts near ties to a continuum that have opened or slid, which the elastic law does not describe."""
+        if self.near_ties is not None and self.uses_history:
             self.near_ties.look(state, self.contacts["body"])
 
     def steps_to_look(self, step: int) -> int | None:

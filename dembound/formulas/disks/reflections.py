@@ -24,8 +24,7 @@ FREQUENCIES = 3
 
 
 DISKS = 10_000
-"""Disks of the bricks beside a side at one frequency of which are measured: some four seconds; fewer frequencies of
-large bricks are, and of larger ones none."""
+"""Disks of bricks times frequencies that are measured at most, some four seconds; of larger bricks one frequency is."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +105,7 @@ class Reflections:
         """
         case = end.case
         step = time_step if case.packing.is_lattice else 0.0
-        if (most := DISKS // len(scene.ground.brick.radii)) < 1:
-            return {}
+        most = max(1, DISKS // len(scene.ground.brick.radii))
         frequencies = frequencies_of(scene.case, scene.ground, min(FREQUENCIES, most))
         packing = case.packing.model_copy(update={"origin": (0.0, 0.0)})
         key = side, step, *frequencies, *map(repr, (packing, case.materials, case.motion, case.side(side)))

@@ -1,7 +1,7 @@
 """Lanes in arrays: read, written, and multiplied by a matrix, one after the other or at eight indices.
 
 Slots that are not one after the other are given by eight indices, `i = load(first, c)` of an array of uint32, in place
-of the first slot: all functions below, and a row of constants (`constants[k, column]`), take either.
+of the first slot: functions with `at`, and a row of constants (`constants[k, column]`), take either.
 """
 
 import operator
@@ -54,14 +54,14 @@ def fetch(array: np.ndarray, at: int) -> None:
     """Ask for eight doubles of a contiguous array (n,), or beyond its end, that are soon loaded; changes nothing."""
 
 
-def store(array: np.ndarray, at: At, values: np.ndarray) -> None:
-    """Write eight doubles to a contiguous array (n,)."""
-    array[_all_of(at)] = values
+def store(array: np.ndarray, i: int, values: np.ndarray) -> None:
+    """Write eight doubles to a contiguous array (n,) from index i on."""
+    array[_all_of(i)] = values
 
 
-def store_of(table: np.ndarray, row: int, at: At, values: np.ndarray) -> None:
-    """Write eight doubles to a row of a contiguous array (m, n)."""
-    store(table[int(row)], at, values)
+def store_of(table: np.ndarray, row: int, i: int, values: np.ndarray) -> None:
+    """Write eight doubles to a row of a contiguous array (m, n) from index i on."""
+    store(table[int(row)], i, values)
 
 
 def store_some(array: np.ndarray, at: At, values: np.ndarray, chosen: int) -> None:
@@ -193,11 +193,6 @@ def _scatter(builder: Any, values: Any, first: Any, at: Any, chosen: Any) -> Non
     _call(builder, f"scatter.v{LANES}{name}.v{LANES}p0", ir.VoidType(), values, places, _ALIGN, chosen)
 
 
-@compiled_as(store, types.void, _array, indices, lanes)
-def _store_at(builder: Any, first: Any, at: Any, values: Any) -> None:
-    _scatter(builder, values, first, at, _EVERYWHERE)
-
-
 @compiled_as(store_some, types.void, _array, indices, lanes, types.uint8)
 def _store_some_at(builder: Any, first: Any, at: Any, values: Any, chosen: Any) -> None:
     _scatter(builder, values, first, at, builder.bitcast(chosen, BITS))
@@ -209,19 +204,18 @@ def _row_of(builder: Any, table: Any, row: Any) -> Any:
     return builder.gep(first, [builder.mul(row, builder.extract_value(shape, 1))])
 
 
-for _kind, _loaded, _stored, _some_stored in (
-    (types.uint64, _load, _store, _store_some),
-    (indices, gathered, _store_at, _store_some_at),
-):
+for _kind, _loaded, _some_stored in ((types.uint64, _load, _store_some), (indices, gathered, _store_some_at)):
     compiled_as(load_of, lanes, _table, types.uint64, _kind)(
         lambda builder, table, row, at, of=_loaded: of(builder, _row_of(builder, table, row), at)
-    )
-    compiled_as(store_of, types.void, _table, types.uint64, _kind, lanes)(
-        lambda builder, table, row, *more, of=_stored: of(builder, _row_of(builder, table, row), *more)
     )
     compiled_as(store_some_of, types.void, _table, types.uint64, _kind, lanes, types.uint8)(
         lambda builder, table, row, *more, of=_some_stored: of(builder, _row_of(builder, table, row), *more)
     )
+
+
+@compiled_as(store_of, types.void, _table, types.uint64, types.uint64, lanes)
+def _store_of(builder: Any, table: Any, row: Any, i: Any, values: Any) -> None:
+    _store(builder, _row_of(builder, table, row), i, values)
 
 
 @compiled_as(nth, types.uint64, types.uint64, types.uint64)

@@ -231,12 +231,9 @@ def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
     described = describe_side(scene, side)
     largest = np.abs(run.edge_peaks(side)[:, :2]).max(axis=2)
     system = run.system
-    watch = system.near_ties if isinstance(system, DiskSystem) else None
-    if watch is not None and scene.case.side(side).is_outside:
-        assert isinstance(system, DiskSystem)
-        if system.uses_history:  # also in runs shorter than from one look to the next
-            watch.look(run.state, system.contacts["body"])
-        described[OPENED] = watch.describe(side, run.time_step)
+    if isinstance(system, DiskSystem) and system.near_ties is not None and scene.case.side(side).is_outside:
+        system.look_near_ties(run.state)  # also in runs shorter than from one look to the next
+        described[OPENED] = system.near_ties.describe(side, run.time_step)
     described["peak_velocity"] = largest.mean(axis=0).tolist()
     described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
     return described
