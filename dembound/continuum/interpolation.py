@@ -18,11 +18,12 @@ class Interpolation(NamedTuple):
     weight: np.ndarray
 
 
-def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def located(mesh: Mesh, points: np.ndarray, right: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """The element (k,) of a mesh nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
 
     Above the free surface beside the box it is the highest element there, beyond periodic sides the element at the
-    image.
+    image. right : (k,) bool, whether it must be right of the slit of the mesh, if it has one; None: wherever the point
+    is.
     """
     places = np.asarray(points) - mesh.origin
     places = np.where(mesh.periodic, places % mesh.size, places)
@@ -30,12 +31,18 @@ def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     chosen = mesh.element_at[np.minimum(row, mesh.tops[column] - 1), column]
     in_box = chosen < 0
     chosen[in_box] = _nearest_to_box(mesh, places[in_box])
+    if right is not None and mesh.slit:
+        wrong = mesh.is_right[chosen] != right
+        chosen[wrong] = _nearest_to_box(mesh, places[wrong], right[wrong])
     first = np.stack([mesh.axes[a].edges[mesh.elements[chosen, a]] for a in (0, 1)], axis=1)
     return chosen, 2.0 * (places - first) / mesh.element_sizes[chosen] - 1.0
 
 
-def _nearest_to_box(mesh: Mesh, places: np.ndarray) -> np.ndarray:
-    """The element (k,) beside the box that is nearest to each of these places (k, 2) m from the origin."""
+def _nearest_to_box(mesh: Mesh, places: np.ndarray, right: np.ndarray | None = None) -> np.ndarray:
+    """The element (k,) beside the box that is nearest to each of these places (k, 2) m from the origin.
+
+    right : see `located`.
+    """
     if mesh.box is None:
         return np.zeros(0, dtype=np.int64)
     near = (mesh.elements >= np.array(mesh.box[:2]) - 1) & (mesh.elements <= mesh.box[2:])
@@ -44,6 +51,8 @@ def _nearest_to_box(mesh: Mesh, places: np.ndarray) -> np.ndarray:
     for a, axis in enumerate(mesh.axes):
         cell, place = mesh.elements[beside, a], places[:, a, None]
         beyond += np.maximum(np.maximum(axis.edges[cell] - place, place - axis.edges[cell + 1]), 0.0) ** 2
+    if right is not None:
+        beyond[mesh.is_right[beside] != right[:, None]] = np.inf
     return beside[np.argmin(beyond, axis=1)]
 
 

@@ -49,6 +49,8 @@ class Mesh:
     layer : how many of the columns and rows absorb at each side.
     periodic : whether the first column (row) follows the last one.
     mirror : 1 for each side whose edge is a plane of symmetry.
+    slit : whether the nodes on the line down from the lower right corner of the box are doubled, so that elements right
+    of it may move otherwise there. The copies, which elements right of it have, are the last nodes, from the bottom.
     """
 
     order: int
@@ -60,6 +62,7 @@ class Mesh:
     layer: Around = NONE
     periodic: tuple[bool, bool] = (False, False)
     mirror: Around = NONE
+    slit: bool = False
 
     def __post_init__(self) -> None:
         for axis, sizes in enumerate((self.widths, self.heights)):
@@ -71,6 +74,8 @@ class Mesh:
                 raise ValueError(f"layers have more elements along axis {axis} than the mesh, {len(sizes)}")
         if self.levels is not None and (self.box is None or self.box[3] < len(self.heights) or self.periodic[0]):
             raise ValueError("only beside a box that reaches the free surface may that be lower")
+        if self.slit and (self.box is None or not 0 < self.box[2] < len(self.widths) or self.box[1] == 0):
+            raise ValueError("a slit runs down from the corner of a box, between elements")
 
     @classmethod
     def uniform(cls, *, element: tuple[float, float], cells: tuple[int, int], **others: Any) -> "Mesh":
@@ -224,16 +229,37 @@ class Mesh:
         numbers[there] = np.arange(there.sum())
         return numbers
 
+    @cached_property
+    def doubled(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes (k,) on the slit of elements left of it, from the bottom, and their copies (k,)."""
+        if not self.slit:
+            return np.zeros((2, 0), dtype=np.int64)[0], np.zeros(0, dtype=np.int64)
+        assert self.box is not None
+        below = self._numbers[: self.order * self.box[1] + 1, self.order * self.box[2]]
+        return below, int(self._numbers.max()) + 1 + np.arange(len(below))
+
+    @property
+    def is_right(self) -> np.ndarray:
+        """(E,) bool, the elements right of the box, also below it."""
+        return self.elements[:, 0] >= (self.cells[0] if self.box is None else self.box[2])
+
     @property
     def count(self) -> int:
         """Number of nodes n."""
-        return int(self._numbers.max()) + 1
+        return int(self._numbers.max()) + 1 + len(self.doubled[0])
 
     @cached_property
     def nodes(self) -> np.ndarray:
         """(E, N, N) the nodes of every element, by row and column of its points."""
         x, y = self._element_lines
-        return self._numbers[y[:, :, None], x[:, None, :]]
+        nodes = self._numbers[y[:, :, None], x[:, None, :]]
+        if self.slit:
+            assert self.box is not None
+            own, copies = self.doubled
+            beside = nodes[self.elements[:, 0] == self.box[2], :, 0]
+            on_it = np.searchsorted(own, beside).clip(max=len(own) - 1)  # numbers grow upwards
+            nodes[self.elements[:, 0] == self.box[2], :, 0] = np.where(own[on_it] == beside, copies[on_it], beside)
+        return nodes
 
     @property
     def node_cells(self) -> np.ndarray:
@@ -258,7 +284,8 @@ class Mesh:
     @cached_property
     def crossing(self) -> np.ndarray:
         """(n, 2) the lines across x and across y that every node lies on."""
-        return np.argwhere(self._numbers >= 0)[:, ::-1]
+        crossing = np.argwhere(self._numbers >= 0)[:, ::-1]
+        return np.concatenate([crossing, crossing[self.doubled[0]]])
 
     @cached_property
     def positions(self) -> np.ndarray:

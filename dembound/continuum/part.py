@@ -33,6 +33,7 @@ class GridBody:
     thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
     first_slot : slot of its first node in the scene; multiples of eight are fastest.
+    inner : m, length between the layers of which their shift depends; None: that of the mesh.
 
     Raises ValueError if a joint of layers lies inside elements.
     """
@@ -44,6 +45,7 @@ class GridBody:
     thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
     first_slot: int = 0
+    inner: float | None = None
 
     def __post_init__(self) -> None:
         edges = self.mesh.origin[1] + self.mesh.axes[1].edges
@@ -112,7 +114,7 @@ class GridBody:
         speed = max(self.ground.media[number].normal_speed(axis) for number in there)
         thickness, guides = self.mesh.axes[axis].thickness[end], axis == 0 and len(there) > 1
         along = max(along_in(self.ground.media[number]) for number in there)
-        return Profile(thickness, speed, self.mesh.inner, self.absorption, guides, along)
+        return Profile(thickness, speed, self.inner or self.mesh.inner, self.absorption, guides, along)
 
     @property
     def is_stretched_along(self) -> bool:

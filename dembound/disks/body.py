@@ -1,6 +1,6 @@
 """The arrays of a body of disks. Only this file defines their names, shapes and units."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -24,14 +24,14 @@ from dembound.motion.memory import thread_count_for
 from dembound.motion.scene import Between, Scene
 from dembound.motion.state import Layout
 from dembound.packings.brick import Brick
-from dembound.packings.column import Seam
+from dembound.packings.column import Seam, columns_end
 from dembound.packings.tiling import Assembly
 
 
 def with_half_contacts(
-    case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
-) -> tuple[Assembly, Seam | None]:
-    """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""
+    case: DiskCase, brick: Brick, assembly: Assembly, seams: Sequence[Seam], edges: Mapping[str, Edge]
+) -> tuple[Assembly, tuple[Seam, ...]]:
+    """Replace contacts along sides of half cells, also across seams, by types with half the stiffness."""
     vectors, whole = brick.vectors, len(brick.pairs)
 
     def halved(contact_type: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -40,25 +40,27 @@ def with_half_contacts(
         return plain + whole * half.astype(contact_type.dtype)
 
     assembly = replace(assembly, contact_type=halved(assembly.contact_type, *assembly.pairs.T))
-    if seam is not None:
+    halves = []
+    for seam in seams:
         owner = np.repeat(seam.twin[seam.node], seam.contact_counts)
-        seam = replace(seam, contact_type=halved(seam.contact_type, owner, seam.neighbour))
-    return assembly, seam
+        halves.append(replace(seam, contact_type=halved(seam.contact_type, owner, seam.neighbour)))
+    return assembly, tuple(halves)
 
 
-def with_layers(ground: PackedMaterial, assembly: Assembly, seam: Seam | None) -> tuple[Assembly, Seam | None]:
-    """Replace the contacts of a layered ground, also across a seam, by types with the springs of their zones."""
+def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam]) -> tuple[Assembly, tuple[Seam, ...]]:
+    """Replace the contacts of a layered ground, also across seams, by types with the springs of their zones."""
     if not ground.is_layered:
-        return assembly, seam
+        return assembly, tuple(seams)
     up, types = assembly.positions[:, 1], 2 * len(ground.brick.pairs)
     pairing = ground.pairing_of(*up[assembly.pairs].T)
     assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
-    if seam is not None:
+    own = []
+    for seam in seams:
         owner = up[np.repeat(seam.twin[seam.node], seam.contact_counts)]
         other = up[seam.neighbour]
         pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
-        seam = replace(seam, contact_type=seam.contact_type + types * pairing)
-    return assembly, seam
+        own.append(replace(seam, contact_type=seam.contact_type + types * pairing))
+    return assembly, tuple(own)
 
 
 @dataclass(frozen=True)
@@ -74,11 +76,11 @@ class DiskBody(Scene):
     edges : side -> its exposed particles, for every side that is not periodic.
     supports : the table of forces from outside, loads that follow a wave included.
     monitors : name -> particle, or the nearest node of the continuum.
-    seam : the connection between the free-field column, whose particles come first in the arrays, and the body; None
-    without a column.
+    seams : the connections between free-field columns, whose particles come first in the arrays, and the body; one
+    column stands for the ground at all sides, or of two the first for that at the left and below.
     slots : the slots in which kernels hold its particles; None: in their order.
     outside : the continuum on some sides, whose nodes follow the particles; None for none.
-    foot : the continuum below the free-field column, whose nodes come last; None for none.
+    feet : the continua below the free-field columns, whose nodes come last.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
@@ -91,10 +93,10 @@ class DiskBody(Scene):
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
-    seam: Seam | None = None
+    seams: tuple[Seam, ...] = ()
     slots: Layout | None = None
     outside: Surroundings | None = None
-    foot: Surroundings | None = None
+    feet: tuple[Surroundings, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
     ground_waves: Undisturbed | None = None
     all_intact: bool = False
@@ -135,8 +137,8 @@ class DiskBody(Scene):
 
     @property
     def column_count(self) -> int:
-        """Number of the particles of its free-field column, which come first; 0 without a column."""
-        return 0 if self.seam is None else self.seam.count
+        """Number of the particles of its free-field columns, which come first; 0 without a column."""
+        return columns_end(self.seams)
 
     @property
     def count(self) -> int:
@@ -146,7 +148,7 @@ class DiskBody(Scene):
     @property
     def continua(self) -> tuple[Surroundings, ...]:
         """The continua, in the order of their nodes."""
-        return tuple(each for each in (self.outside, self.foot) if each is not None)
+        return self.feet if self.outside is None else (self.outside, *self.feet)
 
     @property
     def recorded(self) -> int:
@@ -166,7 +168,7 @@ class DiskBody(Scene):
         if self.outside is None:
             return None
         diameter = self.ground.brick.mean_diameter
-        return RecordedContinuum(self.outside, self.ground_waves, self.assembly, self.column_count, self.mass, diameter)
+        return RecordedContinuum(self.outside, self.ground_waves, self.assembly, self.mass, diameter)
 
     @cached_property
     def positions(self) -> np.ndarray:  # type: ignore[override]  # computed once
@@ -203,15 +205,25 @@ class DiskBody(Scene):
 
     @property
     def parts(self) -> dict[str, slice]:
-        """The particles of each part: of the free-field column, if there is one, and of the body."""
-        return parts_of(self.disk_count, self.seam)
+        """The particles of each part: of the free-field columns, if there are any, and of the body."""
+        return parts_of(self.disk_count, self.seams)
 
-    @property
-    def twin(self) -> np.ndarray | None:
-        """Twin (n,) of each particle in the free-field column, of other nodes themselves; None without a column."""
-        if self.seam is None:
+    @cached_property
+    def twin(self) -> np.ndarray | None:  # type: ignore[override]  # computed once
+        """Twin (n,) of each particle in a free-field column, of other nodes themselves; None without a column.
+
+        Of two columns that of the side the particle is nearer to, by the middle of the slope, or where that has no twin
+        the other one.
+        """
+        if not self.seams:
             return None
-        return np.concatenate([self.seam.twin, np.arange(self.disk_count, self.count)])
+        count = self.disk_count
+        twin, other = self.seams[0].twin, self.seams[-1].twin
+        if len(self.seams) > 1:
+            own = np.arange(count)
+            beyond = self.assembly.positions[:, 0] > self.case.middle
+            twin = np.where(((beyond & (other != own)) | (twin == own)), other, twin)
+        return np.concatenate([twin, np.arange(count, self.count)])
 
     @property
     def against_growth(self) -> str:
@@ -296,11 +308,14 @@ class DiskBody(Scene):
         return self.ground.law.has_history
 
 
-def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
-    """The particle ranges of `count` particles by part: the free-field column, if there is one, and the body."""
-    if seam is None:
-        return {"body": slice(0, count)}
-    return {"column": slice(0, seam.count), "body": slice(seam.count, count)}
+COLUMNS = ("column", "right_column")
+"""The names of the parts that are free-field columns."""
+
+
+def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
+    """The particle ranges of `count` particles by part: the free-field columns, if there are any, and the body."""
+    columns = {name: seam.disks for name, seam in zip(COLUMNS, seams, strict=False)}
+    return {**columns, "body": slice(columns_end(seams), count)}
 
 
 def differs_by_level(case: DiskCase, ground: PackedMaterial) -> bool:

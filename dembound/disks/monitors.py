@@ -11,7 +11,7 @@ the column's disk at the same place of the brick is added.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +27,7 @@ from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
 from dembound.motion.scene import Between
 from dembound.packings.brick import Brick
-from dembound.packings.column import Seam, nearest_in_column
+from dembound.packings.column import Seam, columns_end, nearest_in_column
 from dembound.packings.tiling import Assembly, disks_around
 from dembound.places import is_within, nearest
 
@@ -42,7 +42,7 @@ def monitors_of(
     case: DiskCase,
     ground: PackedMaterial,
     assembly: Assembly,
-    seam: Seam | None,
+    seams: Sequence[Seam],
     outside: Surroundings | None,
     waves: Undisturbed | None = None,
 ) -> Monitors:
@@ -54,10 +54,16 @@ def monitors_of(
     """
     if not case.monitor:
         return {}, {}
-    first = 0 if seam is None else seam.count
+    first = columns_end(seams)
     of_body = first + nearest(assembly.positions[first:], np.array([m.position for m in case.monitor]))
     nodes = {m.name: int(node) for m, node in zip(case.monitor, of_body, strict=True)}
-    twins = {} if seam is None else {name: int(seam.twin[node]) for name, node in nodes.items()}
+    twins = {}
+    for name, node in nodes.items() if seams else ():
+        beyond = int(len(seams) > 1 and assembly.positions[node, 0] > case.middle)
+        twins[name] = int(seams[beyond].twin[node])
+        if twins[name] == node:  # above the ground at that side
+            place = np.array([[assembly.positions[node, 0], seams[beyond].top]])
+            twins[name] = int(nearest_in_column(assembly, place, beyond)[0])
     between: dict[str, Between] = {}
     disks = {name: (assembly.positions[node], int(assembly.brick_particle[node])) for name, node in nodes.items()}
     if outside is not None:
@@ -68,8 +74,9 @@ def monitors_of(
             if (beyond := around.disk_at(monitor.position, disks[name][0])) is None:
                 continue
             disks[name] = place, kind = beyond
-            if seam is not None:
-                twins[name] = int(nearest_in_column(assembly, place[None])[0])
+            if seams:
+                column = int(outside.is_right(place[None])[0]) if len(seams) > 1 else 0
+                twins[name] = int(nearest_in_column(assembly, place[None], column)[0])
             between[name] = _in_continuum(outside, ground, place, kind, twins.get(name))
             nodes[name] = outside.first + int(nearest(outside.body.mesh.positions, place[None])[0])
     if waves is not None:

@@ -132,7 +132,7 @@ def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
     disks along some part of their outline, as beside another hole.
     """
     hole = scene.case.hole_of(load)
-    first = 0 if scene.seam is None else scene.seam.count
+    first = scene.column_count
     body = scene.assembly.part(slice(first, scene.disk_count))
     if hole.takes(body.positions, float(body.size.max())).any():
         return np.zeros(0, dtype=np.int64), np.zeros((0, 3))

@@ -109,10 +109,10 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     place = np.empty_like(middle)  # of each disk of the row in the scene
     place[like[middle]] = middle
     edges = find_edges(row, (periodic[0], periodic[1]), case.packing.regular_sides)
-    row, _ = with_half_contacts(case, brick, row, None, edges)
-    row, _ = with_layers(scene.ground, replace(row, positions=scene.positions[place]), None)
+    row, _ = with_half_contacts(case, brick, row, (), edges)
+    row, _ = with_layers(scene.ground, replace(row, positions=scene.positions[place]), ())
     fraction = mass_factor(len(place), edges, case.boundary)
-    slots, contacts = lay_out(row, scene.ground, parts_of(len(place), None), fraction, by_level=scene.ground.is_layered)
+    slots, contacts = lay_out(row, scene.ground, parts_of(len(place), ()), fraction, by_level=scene.ground.is_layered)
     share = fraction / scene.cell_fraction[place]
     return OneRow(
         case=case,
@@ -196,7 +196,7 @@ def identical_row(scene: DiskScene) -> OneRow | None:
     """
     case = scene.case
     apart = scene.has_history or case.output.load_factor or case.static is not None
-    if apart or scene.outside is not None or scene.seam is not None:
+    if apart or scene.outside is not None or scene.seams:
         return None
     copies = scene.assembly.copies
     axes = (0,) if scene.ground.is_layered else np.argsort(copies, kind="stable").tolist()

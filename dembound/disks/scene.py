@@ -13,7 +13,13 @@ from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import GridSizes
 from dembound.disks.bearing import Springs, bearing_springs
-from dembound.disks.body import DiskBody, differs_by_level, parts_of, with_half_contacts, with_layers
+from dembound.disks.body import (
+    DiskBody,
+    differs_by_level,
+    parts_of,
+    with_half_contacts,
+    with_layers,
+)
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
@@ -29,14 +35,14 @@ from dembound.disks.stepping.fields import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.supports import steady, supports_of
 from dembound.disks.surroundings.continuum import Surroundings, surroundings_of
-from dembound.disks.surroundings.edges import edges_beside_column, find_edges, hollowed, require_held
+from dembound.disks.surroundings.edges import ON_IT, edges_beside_columns, find_edges, hollowed, require_held
 from dembound.disks.surroundings.frequencies import mechanisms_of
 from dembound.disks.surroundings.layered_waves import undisturbed
-from dembound.disks.surroundings.mesh import NO_FLOORS, Outline
+from dembound.disks.surroundings.mesh import NO_FLOORS, Level, Outline
 from dembound.holes.hole import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.state import Layout
-from dembound.packings.column import Seam, with_column
+from dembound.packings.column import Seam, Standing, columns_end, with_columns
 from dembound.packings.tiling import Assembly, tile
 
 UPRIGHT = (True, False)
@@ -166,7 +172,7 @@ def build(case: DiskCase) -> DiskScene:
     if not later:
         return scene
     body, edges, kept = hollowed(case, ground.brick, body, edges, later, case.floors)
-    column = np.arange(0 if scene.seam is None else scene.seam.count)
+    column = np.arange(scene.column_count)
     kept = np.concatenate([column, len(column) + kept])
     return replace(_scene(case, ground, body, edges, case.floors), before=scene, kept=kept)
 
@@ -182,33 +188,39 @@ def _scene(
 
     floors : left by its holes at left and right sides.
     """
-    body, seam, beyond = assembly, None, case.outside_sides
+    body, beyond = assembly, case.outside_sides
+    seams: tuple[Seam, ...] = ()
     around = _beneath(case, ground) if set(beyond) == {"bottom"} else ground
-    outline = Outline.of(case, around, body, beyond, case.periodic, floors) if beyond else None
-    if sides := case.column_sides:
+    standing = _standing(case, ground, body, floors)
+    outline = None
+    if beyond:
+        outline = Outline.of(case, around, body, beyond, case.periodic, floors, slit=len(standing) > 1)
+    if standing:
         beside = case.box[0] if outline is None else outline.mesh.origin[0]
-        assembly, seam = with_column(ground.brick, body, sides, case.column_rows, (beside, case.box[1]))
-        edges = edges_beside_column(assembly, seam, edges)
-    assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
+        assembly, seams = with_columns(ground.brick, body, standing, case.column_rows, (beside, case.box[1]))
+        edges = edges_beside_columns(assembly, seams, edges)
+    assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count = len(assembly.radii)
-    assembly, seam = with_layers(ground, assembly, seam)
+    assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
         assembly,
         ground,
-        parts_of(count, seam),
+        parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
         by_level=differs_by_level(case, ground),
     )
-    outside = None
+    outside, layout = None, slots
     if outline is not None:
-        first, twin = (0, None) if seam is None else (seam.count, seam.twin)
-        outside = surroundings_of(around, body, outline, slots, first, twin)
-    foot = None
-    if seam is not None and "bottom" in beyond:
-        foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
+        twins = tuple(seam.twin for seam in seams)
+        outside = surroundings_of(around, body, outline, slots, columns_end(seams), twins)
+        layout = outside.laid_out(layout)
+    feet: list[Surroundings] = []
+    for seam in seams if "bottom" in beyond else ():
+        feet.append(_foot(case, ground, assembly, seam, layout, outline if len(seams) > 1 else None))
+        layout = feet[-1].laid_out(layout)
     waves = None if outside is None else undisturbed(case, ground, outside)
-    monitors, between = monitors_of(case, ground, assembly, seam, outside, waves)
+    monitors, between = monitors_of(case, ground, assembly, seams, outside, waves)
     scene = DiskScene(
         case=case,
         ground=ground,
@@ -217,20 +229,42 @@ def _scene(
         edges=edges,
         supports=SupportBuilder().table(),
         monitors=monitors,
-        seam=seam,
+        seams=seams,
         slots=slots,
         outside=outside,
-        foot=foot,
+        feet=tuple(feet),
         between=between,
         ground_waves=waves,
     )
     return with_waves(scene, case.wave)
 
 
-def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
-    """The continuum below the free-field column, of equal width; layout : of all nodes before its own."""
-    column, ground = assembly.part(slice(0, seam.count)), _beneath(case, ground)
-    return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
+def _standing(
+    case: DiskCase, ground: PackedMaterial, body: Assembly, floors: Mapping[str, Floor]
+) -> tuple[Standing, ...]:
+    """The free-field columns of a body: one, or one for each side where the ground left and right differs."""
+    sides = case.column_sides
+    tops = {side: Level.of(ground, body, floors[side], side).height for side in sides if side in floors}
+    highest, lowest = (of(tops.get(side, case.box[3]) for side in ("left", "right")) for of in (max, min))
+    if not {"left", "right"} <= {*sides} or highest - lowest <= ON_IT * ground.brick.mean_diameter:
+        return (Standing(sides, next(iter(tops.values()), None)),) if sides else ()
+    left = tuple(side for side in sides if side != "right")
+    return Standing(left, tops.get("left")), Standing(("right",), tops.get("right"))
+
+
+def _foot(
+    case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout, beside: Outline | None
+) -> Surroundings:
+    """The continuum below a free-field column, of equal width; layout : of all nodes before its own.
+
+    beside : the continuum round the body, if its elements have the same heights, as below two columns.
+    """
+    column, ground = assembly.part(seam.disks), _beneath(case, ground)
+    if beside is None:
+        outline, inner = Outline.of(case, ground, column, ("bottom",), UPRIGHT), None
+    else:
+        outline, inner = Outline.below(case, ground, column, beside), beside.mesh.inner
+    return surroundings_of(ground, column, outline, layout, seam.disks.start, inner=inner)
 
 
 def _beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
@@ -239,8 +273,8 @@ def _beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
     return ground if deeper else ground.at(case.box[1])
 
 
-def column_alone(scene: DiskScene) -> DiskScene:
-    """The free-field column of a body as a separate scene, with boundaries only at its bottom and top.
+def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
+    """A free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
     Its particles are numbered as in the body's scene; only loads that act on all particles act on it. Its dashpots have
     the factors used beside the body. It has no continuum at its ends and no column of its own: a side of type
@@ -260,9 +294,10 @@ def column_alone(scene: DiskScene) -> DiskScene:
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
-    column = tile(brick, (1, case.column_rows[1]), UPRIGHT, case.box[:2])
+    standing = Standing((), scene.seams[number].top)
+    column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
-    intact = scene.intact is not None and bool(scene.intact[: scene.column_count].all())
+    intact = scene.intact is not None and bool(scene.intact[scene.seams[number].disks].all())
     return replace(alone_scene, all_intact=intact)
 
 

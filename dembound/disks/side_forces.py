@@ -9,13 +9,14 @@ import numpy as np
 
 from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.support import Edge
-from dembound.disks.body import DiskBody
+from dembound.disks.body import COLUMNS, DiskBody
 from dembound.disks.contacts.pairs import PIECE, Piece
 from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.laws.law import K
+from dembound.packings.column import Seam
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly
 
@@ -69,12 +70,12 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
     if at_rest is None:
         return force
     for name, nodes in scene.parts.items():
-        body, upright = scene.assembly.part(nodes), name == "column"
+        body, upright = scene.assembly.part(nodes), name in COLUMNS
         sides = SIDES[2:] if upright else tuple(scene.edges)
         edges = {side: _among(scene.edges[side], nodes) for side in sides if side in scene.edges}
         ends, part = _ends(scene, body, edges, (True, False) if upright else scene.case.periodic)
-        if not upright and scene.seam is not None:
-            part = np.where(_in_seam(scene, ends, nodes.start), 0.0, part)
+        for seam in () if upright else scene.seams:
+            part = np.where(_in_seam(scene, seam, ends, nodes.start), 0.0, part)
         heights = body.positions[ends.node, 1] + 0.5 * ends.vectors(scene.ground.brick)[:, 1]
         layer, each = scene.ground.layer_of(heights), np.zeros((3, len(heights)))
         for number in np.unique(layer):
@@ -106,10 +107,8 @@ def _among(edge: Edge, nodes: slice) -> Edge:
     return replace(own, nodes=own.nodes - nodes.start)
 
 
-def _in_seam(scene: DiskBody, ends: CutContacts, begin: int) -> np.ndarray:
-    """Whether the free-field column exerts the forces of contact ends (e,); begin : number of the body's first disk."""
-    seam = scene.seam
-    assert seam is not None
+def _in_seam(scene: DiskBody, seam: Seam, ends: CutContacts, begin: int) -> np.ndarray:
+    """Whether a free-field column exerts the forces of contact ends (e,); begin : number of the body's first disk."""
     whole = len(scene.ground.brick.pairs)
     owner = np.repeat(seam.node - begin, seam.contact_counts)
     keys = [

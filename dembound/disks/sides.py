@@ -69,42 +69,50 @@ def medium_of_side(scene: DiskBody, side: str) -> BoundaryMedium:
 
 T = TypeVar("T")
 
+ENDS_OF_COLUMNS = (FREE_FIELD, ".right_free_field")
+"""Endings of the names of the bottom and top of each column."""
+
 
 def sides_of(body: DiskBody) -> dict[str, Edge]:
-    """The edges of a body, of its column bottom and top, as ``bottom.free_field``, and those of continua."""
+    """The edges of a body, of its columns bottom and top, as ``bottom.free_field``, and those of continua."""
     sides = dict(body.edges)
-    if body.seam is not None:
+    if body.seams:
         sides = {}
         for side, edge in body.edges.items():
-            beside = edge.nodes < body.seam.count
-            width = body.seam.width if edge.axis == 1 else 0.0
-            sides[side] = edge.only(~beside, edge.length - width)
-            if beside.any():
-                sides[f"{side}{FREE_FIELD}"] = edge.only(beside, width)
+            own = edge.nodes >= body.column_count
+            widths = [seam.width if edge.axis == 1 else 0.0 for seam in body.seams]
+            sides[side] = edge.only(own, edge.length - sum(widths))
+            for seam, width, name in zip(body.seams, widths, ENDS_OF_COLUMNS, strict=False):
+                beside = (edge.nodes >= seam.disks.start) & (edge.nodes < seam.disks.stop)
+                if beside.any():
+                    sides[f"{side}{name}"] = edge.only(beside, width)
     if body.outside is not None:
-        if body.seam is not None:  # in the ground the column's ends are not at the level of the body's
+        if body.seams:  # in the ground the column's ends are not at the level of the body's
             sides |= {side: _tied_edge(body, side) for side in body.outside.sides}
         sides |= body.outside.edges
-    if body.foot is not None:
-        sides |= _of_column(body.foot.edges)
+    for foot, name in zip(body.feet, ENDS_OF_COLUMNS, strict=False):
+        sides |= _of_column(foot.edges, name)
     return sides
 
 
 def tied_of(body: DiskBody) -> dict[str, np.ndarray]:
     """Nodes (k,) of a body that ties act on, by side: particles beside a free field or continuum, nodes of continua."""
     if body.outside is not None:
-        return body.outside.tied_by_side | ({} if body.foot is None else _of_column(body.foot.tied_by_side))
-    if body.seam is None:
+        tied = dict(body.outside.tied_by_side)
+        for foot, name in zip(body.feet, ENDS_OF_COLUMNS, strict=False):
+            tied |= _of_column(foot.tied_by_side, name)
+        return tied
+    if not body.seams:
         return {}
-    node = body.seam.node
+    node = np.unique(np.concatenate([seam.node for seam in body.seams]))
     left = body.assembly.positions[node, 0] < body.low[0] + 0.5 * body.size[0]
     near = {"left": node[left], "right": node[~left]}
     return {side: nodes for side, nodes in near.items() if body.case.side(side).needs_column}
 
 
-def _of_column(by_side: Mapping[str, T]) -> dict[str, T]:
-    """A mapping by side of the column's foot, renamed to the names of the column's sides in the scene."""
-    return {name.replace("bottom", f"bottom{FREE_FIELD}"): value for name, value in by_side.items()}
+def _of_column(by_side: Mapping[str, T], ending: str) -> dict[str, T]:
+    """A mapping by side of a column's foot, renamed to the names of the column's sides in the scene."""
+    return {name.replace("bottom", f"bottom{ending}"): value for name, value in by_side.items()}
 
 
 def _tied_edge(body: DiskBody, side: str) -> Edge:

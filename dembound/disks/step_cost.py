@@ -64,7 +64,7 @@ def times_of_scene(scene: DiskScene) -> dict[str, float]:
     absorbing = sum(int(np.count_nonzero(beyond.body.mesh.depth.any(axis=1))) for beyond in scene.continua)
     nodes = sum(beyond.count for beyond in scene.continua)
     ties = sum(len(beyond.wall.element) for beyond in scene.continua)
-    column = 0 if scene.seam is None else scene.seam.count
+    column = scene.column_count
     each = time_per_disk(scene)
     disks = {"free-field column": each * column, "disks": each * (scene.disk_count - column)}
     wave = 0.0 if scene.ground_waves is None else DRIVE * len(scene.supports.drive_row)

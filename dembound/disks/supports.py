@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from dembound.boundaries.support import Incident, SupportBuilder, Supports, Waves
-from dembound.casefile.disks.load import FREE_FIELD, Load
+from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.model import DiskCase
 from dembound.continuum.edges import Traction, traction_in
 from dembound.disks.body import DiskBody
 from dembound.disks.pressure import forces_on_sides, pressure_on
-from dembound.disks.sides import media_of
+from dembound.disks.sides import ENDS_OF_COLUMNS, media_of
 from dembound.disks.stepping.scene_parts import disks_on_foot
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import GroundWaves, rising_waves
@@ -155,15 +155,15 @@ def _rising(
 def _let_in_below(scene: DiskBody, signals: tuple[Incident | None, Incident | None], builder: SupportBuilder) -> None:
     """Add the waves along x and y, None for none, that enter through the continuum below to the support table.
 
-    Beside a free-field column they enter through its foot, and the body's disks that stand on the ground below have the
-    forces of their twins.
+    Beside free-field columns they enter through the foot of each, and the body's disks that stand on the ground below
+    have the forces of their twins in the first.
     """
-    beneath = scene.outside if scene.foot is None else scene.foot
-    assert beneath is not None
-    waves = _rising(scene.case, beneath, signals, scene.ground.brick.mean_diameter)
     disks = disks_on_foot(scene)
-    twins = disks if scene.twin is None else scene.twin[disks]
-    builder.side = "bottom"
-    let_in_below(beneath, waves, scene.positions, builder, (twins, disks))
-    side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
-    builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))
+    twins = scene.seams[0].twin[disks] if scene.feet else disks
+    for number, beneath in enumerate(scene.feet or scene.continua):
+        waves = _rising(scene.case, beneath, signals, scene.ground.brick.mean_diameter)
+        builder.side = "bottom"
+        let_in_below(beneath, waves, scene.positions, builder, (twins, disks))
+        twins = disks = disks[:0]
+        side = f"bottom{ENDS_OF_COLUMNS[number]}" if scene.feet else "bottom"
+        builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))

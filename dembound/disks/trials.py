@@ -49,7 +49,7 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     whole = build(case)
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
-        plain = replace(plain, load=(NOTHING,) if whole.seam is not None else ())
+        plain = replace(plain, load=(NOTHING,) if whole.seams else ())
     words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
@@ -60,7 +60,7 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
     if scene.continua:
         size += f" and {sum(each.count for each in scene.continua):,} nodes of a continuum"
-    if scene.seam is not None:
+    if scene.seams:
         size += ", with the free-field column"
     found = [_under(scene, own.linear)]
     if not own.is_linear:

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Literal, NamedTuple, Self
 
 import numpy as np
@@ -110,6 +111,23 @@ class Floor(NamedTuple):
     width: float
 
 
+def _is_open(holes: Sequence[Hole], x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
+    """Whether places x, y (k,) m are in holes, (k,)."""
+    places = np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y)), axis=1)
+    return np.any([hole.takes(places, span=0.0) for hole in holes], axis=0)
+
+
+def level_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> float:
+    """Length (m) from the left or right side of a box inwards over which no hole opens its upper side.
+
+    diameter : mean diameter of the disks, m; see `floor_beside`, whose floors such sides have none of.
+    """
+    left, _, right, top = box
+    away = np.arange(0.5 * diameter, right - left, diameter / FINE)
+    there = _is_open(holes, left + away if side == "left" else right - away, top - 0.5 * diameter)
+    return float(away[np.argmax(there)]) if holes and there.any() else right - left
+
+
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:
     """The floor beside the left or right side of a box (left, bottom, right, top; m); None if no hole lowers it there.
 
@@ -121,10 +139,7 @@ def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
     left, bottom, right, top = box
     edge, inwards = (left, 1.0) if side == "left" else (right, -1.0)
 
-    def is_open(x: np.ndarray | float, y: np.ndarray | float) -> np.ndarray:
-        places = np.stack(np.broadcast_arrays(np.atleast_1d(x), np.atleast_1d(y)), axis=1)
-        return np.any([hole.takes(places, span=0.0) for hole in holes], axis=0)
-
+    is_open = partial(_is_open, holes)
     beside = edge + 0.5 * inwards * diameter
     down = np.arange(top - 0.5 * diameter, bottom, -diameter / FINE)
     solid = np.append(~is_open(beside, down), True)

@@ -14,7 +14,7 @@ from dembound.kernels import tables
 from dembound.kernels.common import FAST
 from dembound.kernels.compiler.bundles import At, Role, Written, caller, kind_of, kinds_of_parts, reader
 from dembound.kernels.compiler.separate import compiled
-from dembound.kernels.law import across, begin, check, finish, move, note, push, turn, turning_work
+from dembound.kernels.law import across, begin, check, finish, join, move, note, push, turn, turning_work
 
 Bundles = tuple[Any, ...]
 
@@ -103,6 +103,12 @@ def _across(tie, motion, step, number, given):
 
 
 @njit(**FAST)
+def _join(tie, motion, step, number, given):
+    moved, its = motion_at(motion), given_at(given)
+    join(tie, moved.u_next, moved.v, its.body.step, its.supports.inertia, its.moved, its.log.work)
+
+
+@njit(**FAST)
 def _turn(turning, motion, step, number, given):
     moved, its = motion_at(motion), given_at(given)
     return turn(turning, moved.u, moved.v, its.body.load, its.body.step)
@@ -113,7 +119,7 @@ def _turning_work(turning, motion, step, number, given):
     return turning_work(turning, motion_at(motion).v, given_at(given).body.step)
 
 
-BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH, ACROSS, TURN, TURNING_WORK = range(1, 10)
+BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH, ACROSS, JOIN, TURN, TURNING_WORK = range(1, 11)
 """Columns of the tables of bundles, see `entered`: kernels of laws, of ties, and of rotating forces."""
 
 ROLES = {
@@ -124,6 +130,7 @@ ROLES = {
     MOVE: Role(move, _move),
     FINISH: Role(finish, _finish),
     ACROSS: Role(across, _across),
+    JOIN: Role(join, _join),
     TURN: Role(turn, _turn, types.float64),
     TURNING_WORK: Role(turning_work, _turning_work, types.float64),
 }
@@ -194,7 +201,7 @@ def _measure_all(bundles, column, motion, step, number, given):  # type: ignore[
     return total
 
 
-_CALLED = (BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH), (ACROSS,), (TURN, TURNING_WORK), (), ()
+_CALLED = (BEGIN, CHECK, PUSH, NOTE, MOVE, FINISH), (ACROSS, JOIN), (TURN, TURNING_WORK), (), ()
 """Columns of the kernels of laws, ties, rotating forces, motions and given data."""
 
 Kept = dict[tuple[int, int], tuple[Written, list[int]]]

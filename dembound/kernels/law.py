@@ -77,6 +77,15 @@ def across(tie, u, v, force):
 
 
 @generic
+def join(tie, u_next, v, step, inertia, moved, work):
+    """Change the motion of supported nodes (k,) after a step (s) to what a tie prescribes, and the ledger with it.
+
+    u_next, v : (3, n) displacements and velocities after the step. inertia : (k, 3) masses over the step. moved :
+    (3, 3, k), see step.move_supported. work : (2, 7), see tables.Log.
+    """
+
+
+@generic
 def turn(turning, u, v, load, step):
     """Rotate the forces that rotate with their sides, in load (3, n); returns its work (J) up to the whole step."""
 
@@ -110,9 +119,10 @@ def is_law(
             answer(globals()[name], bundle, kernel)
 
 
-def is_tie(bundle: type, *, across: Kernel) -> None:
+def is_tie(bundle: type, *, across: Kernel, join: Kernel | None = None) -> None:
     """Register bundles of this type as a tie."""
     answer(globals()["across"], bundle, across)
+    answer(globals()["join"], bundle, join)
 
 
 def is_turning(bundle: type, *, turn: Kernel, turning_work: Kernel) -> None:

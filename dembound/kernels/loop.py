@@ -11,6 +11,7 @@ from dembound.kernels.calls import (
     BEGIN,
     CHECK,
     FINISH,
+    JOIN,
     MOVE,
     NOTE,
     PUSH,
@@ -79,6 +80,7 @@ def _advance(number, laws, ties, turning, motions, given):
         call_all(laws, NOTE, motion, step, number + step, given)
         call_all(laws, MOVE, motion, step, number + step, given)
         move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
+        call_all(ties, JOIN, motion, step, number + step, given)
         if log.sides.every > 0:
             sides = log.sides  # the ledger is written after the last step only
             row = (number + step) // sides.every - sides.first if (number + step) % sides.every == 0 else -1

@@ -1,11 +1,14 @@
-"""The free-field column of a body: one brick wide and periodic sideways, so that it represents the ground.
+"""The free-field columns of a body: one brick wide and periodic sideways, so that each represents the ground.
 
 Under waves that arrive vertically, all bricks of the infinite tiling at the same height have the same motion. A column
 one brick wide and periodic sideways has this motion too. The force of the ground beyond a side of the body in that
-motion is the force on the column's own particles across the same seam (Z eq. 21).
+motion is the force on the column's own particles across the same seam (Z eq. 21). Where the ground left and right
+differs each side has a column of its own.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,14 +27,15 @@ APART = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Seam:
-    """The contacts of the column across the sides of the body; particles are those of the joint assembly.
+    """The contacts of a column across sides of the body; particles are those of the joint assembly.
 
     Attributes
     ----------
-    count : number of the column's particles, which come first in the assembly.
+    disks : the range of the column's particles in the assembly.
+    sides, top : at which the column represents the ground, and where it ends, see `Standing`.
     width : m, of the column, its period.
-    twin : (n,) int64, the column's particle at the same place of the brick; particles of the column are their own
-        twins.
+    twin : (n,) int64, the column's particle at the same place of the brick; of particles without one, and of those of
+        columns, themselves.
     node : (k,) int64, particles of the body that have contacts beyond a side, sorted.
     start : (k + 1,) uint32: the contacts of node[s] are start[s]:start[s + 1] of the next three.
     neighbour : (e,) int64, the column's particle in the place of the neighbour.
@@ -40,7 +44,9 @@ class Seam:
     image : (e,) int64, periods of the column from the twin to that neighbour.
     """
 
-    count: int
+    disks: slice
+    sides: tuple[str, ...]
+    top: float | None
     width: float
     twin: np.ndarray
     node: np.ndarray
@@ -62,63 +68,121 @@ class Seam:
         return owner, self.neighbour, vectors * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
 
 
-def with_column(
+def columns_end(seams: Sequence[Seam]) -> int:
+    """Number of the particles of columns, which come first."""
+    return seams[-1].disks.stop if seams else 0
+
+
+class Standing(NamedTuple):
+    """A column to be built.
+
+    sides : at which it represents the ground. top : height y (m) above which it has no disks; None: it is whole.
+    """
+
+    sides: tuple[str, ...]
+    top: float | None = None
+
+    def tiled(self, brick: Brick, height: int, origin: tuple[float, float], bottom: float | None = None) -> Assembly:
+        """The column of `height` bricks by itself, its lower left corner at an origin, m.
+
+        bottom : height y (m) at which it will stand; None: that of the origin.
+        """
+        column = tile(brick, (1, height), (True, False), origin)
+        if self.top is None:
+            return column
+        above = 0.0 if bottom is None else bottom - origin[1]
+        return column.without(column.positions[:, 1] + above > self.top)[0]
+
+
+def with_columns(
     brick: Brick,
     body: Assembly,
-    sides: tuple[str, ...],
+    standing: Sequence[Standing],
     rows: tuple[int, int] | None = None,
     beside: tuple[float, float] | None = None,
-) -> tuple[Assembly, Seam]:
-    """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.
+) -> tuple[Assembly, tuple[Seam, ...]]:
+    """A body and its free-field columns in one assembly, the columns first, and the seams between them and the body.
 
-    sides : at which the column represents the ground.
-    rows : first row of bricks of the body in the column, and the number of rows of the column; None: it is as high as
-    the body. beside : lower left corner (m) of the region it stands beside, by default of the body.
+    A whole column has a twin of every disk of the body, another one of those with contacts beyond its sides.
 
-    Raises PackingError when a disk of the body has no twin in the column.
+    standing : the columns; the first stands left of the body, another one right of it.
+    rows : first row of bricks of the body in the columns, and the number of rows of a column; None: it is as high as
+    the body. beside : lower left corner (m) of the region that the first stands beside, by default of the body.
+
+    Raises PackingError when a disk has no twin.
     """
     first, height = (0, body.copies[1]) if rows is None else rows
-    column = tile(brick, (1, height), (True, False))
-    place = column.tile.astype(np.int64)
-    numbers = np.full((place[:, 1].max() + 1, len(brick.radii)), -1, dtype=np.int64)
-    numbers[place[:, 1], column.brick_particle] = np.arange(len(place))
-    where = body.tile.astype(np.int64)
-    level = first + where[:, 1]
-    there = (level >= 0) & (level < len(numbers))
-    twin = np.where(there, numbers[np.where(there, level, 0), body.brick_particle], -1)
-    if (twin < 0).any():
-        raise PackingError(f"{np.count_nonzero(twin < 0)} disks of the body have no twin in the free-field column")
-    count = len(column.radii)
-    width = float(brick.size[0])
+    width, gap = float(brick.size[0]), APART * brick.mean_diameter
     left, bottom = body.origin.tolist() if beside is None else beside
-    corner = np.array([left - width - APART * brick.mean_diameter, bottom])
-    seam = _seam(brick, body, first, numbers, sides)
+    places = left - width - gap, float(body.origin[0] + body.extent[0]) + gap
+    built = [each.tiled(brick, height, (0.0, 0.0), bottom) for each in standing]
+    count = sum(len(each.radii) for each in built)
+    columns, seams, begin = [], [], 0
+    for each, column, x in zip(standing, built, places, strict=False):
+        disks, corner = slice(begin, begin + len(column.radii)), np.array([x, bottom])
+        columns.append(Column(disks, column.copies, column.size, column.extent, corner))
+        seams.append(_seam_of(brick, body, each, column, first, disks, count))
+        begin = disks.stop
     joint = replace(
         body,
-        positions=np.vstack([column.positions + corner, body.positions]),
-        radii=np.concatenate([column.radii, body.radii]),
-        brick_particle=np.concatenate([column.brick_particle, body.brick_particle]),
-        tile=np.vstack([column.tile, body.tile]),
-        pairs=np.vstack([column.pairs, body.pairs + np.int32(count)]),
-        contact_type=np.concatenate([column.contact_type, body.contact_type]),
-        column=Column(count, column.copies, column.size, column.extent, corner),
-        loose=column.loose + body.loose,
+        positions=np.vstack(
+            [*(own.positions + of.origin for own, of in zip(built, columns, strict=True)), body.positions]
+        ),
+        radii=np.concatenate([*(each.radii for each in built), body.radii]),
+        brick_particle=np.concatenate([*(each.brick_particle for each in built), body.brick_particle]),
+        tile=np.vstack([*(each.tile for each in built), body.tile]),
+        pairs=np.vstack(
+            [
+                *(own.pairs + np.int32(of.disks.start) for own, of in zip(built, columns, strict=True)),
+                body.pairs + np.int32(count),
+            ]
+        ),
+        contact_type=np.concatenate([*(each.contact_type for each in built), body.contact_type]),
+        columns=tuple(columns),
+        loose=sum(each.loose for each in built) + body.loose,
     )
-    node, start = np.unique(seam["node"], return_index=True)
-    return joint, Seam(
-        count=count,
-        width=width,
-        twin=np.concatenate([np.arange(count), twin]),
+    return joint, tuple(seams)
+
+
+def _seam_of(
+    brick: Brick, body: Assembly, standing: Standing, column: Assembly, first: int, disks: slice, count: int
+) -> Seam:
+    """The seam between a body and a column, the disks of which have these numbers.
+
+    first : row of bricks of the column at the body's lowest one. count : number of disks of all columns.
+    """
+    place = column.tile.astype(np.int64)
+    numbers = np.full((place[:, 1].max() + 1, len(brick.radii)), -1, dtype=np.int64)
+    numbers[place[:, 1], column.brick_particle] = np.arange(disks.start, disks.stop)
+    twin = _at(numbers, first + body.tile[:, 1].astype(np.int64), body.brick_particle)
+    contacts = _contacts(brick, body, first, numbers, standing.sides)
+    needed = np.arange(len(twin)) if standing.top is None else np.unique(contacts["node"])
+    if lost := np.count_nonzero(twin[needed] < 0):
+        raise PackingError(f"{lost} disks of the body have no twin in the free-field column")
+    node, start = np.unique(contacts["node"], return_index=True)
+    own = np.arange(count + len(twin))
+    return Seam(
+        disks=disks,
+        sides=standing.sides,
+        top=standing.top,
+        width=float(brick.size[0]),
+        twin=np.concatenate([own[:count], np.where(twin < 0, own[count:], twin)]),
         node=node + count,
-        start=np.append(start, len(seam["node"])).astype(np.uint32),
-        neighbour=seam["neighbour"],
-        contact_type=seam["contact_type"],
-        twin_is_second=seam["twin_is_second"],
-        image=seam["image"],
+        start=np.append(start, len(contacts["node"])).astype(np.uint32),
+        neighbour=contacts["neighbour"],
+        contact_type=contacts["contact_type"],
+        twin_is_second=contacts["twin_is_second"],
+        image=contacts["image"],
     )
 
 
-def _seam(
+def _at(numbers: np.ndarray, level: np.ndarray, particle: np.ndarray) -> np.ndarray:
+    """Disks (k,) of a column with numbers (rows, disks of the brick), at rows and places in the brick; −1 for none."""
+    there = (level >= 0) & (level < len(numbers))
+    return np.where(there, numbers[np.where(there, level, 0), particle], -1)
+
+
+def _contacts(
     brick: Brick, body: Assembly, first: int, numbers: np.ndarray, sides: tuple[str, ...]
 ) -> dict[str, np.ndarray]:
     """Contacts of the body's disks with neighbours beyond its sides, sorted by disk, then contact, (e,) each.
@@ -127,9 +191,7 @@ def _seam(
     where there is none: contacts with the ground below the column are not among them.
     """
     cut = cut_contacts(brick, body, sides)
-    height = first + cut.tile[:, 1]
-    standing = (height >= 0) & (height < len(numbers))
-    near = np.where(standing, numbers[np.where(standing, height, 0), cut.other], -1)
+    near = _at(numbers, first + cut.tile[:, 1], cut.other)
     columns = {
         "node": cut.node,
         "neighbour": near,
@@ -140,17 +202,17 @@ def _seam(
     return {name: values[near >= 0] for name, values in columns.items()}
 
 
-def nearest_in_column(joint: Assembly, places: np.ndarray) -> np.ndarray:
-    """The disk (k,) of a column nearest to places (k, 2) m of the ground, modulo the column's width.
+def nearest_in_column(joint: Assembly, places: np.ndarray, number: int = 0) -> np.ndarray:
+    """The disk (k,) of a column, by its number, nearest to places (k, 2) m of the ground, modulo the column's width.
 
-    joint : a body with its column. −1 for places below the column's bottom, or above its top.
+    joint : a body with its columns. −1 for places below the column's bottom, or above its top.
     """
-    column = joint.column
-    assert column is not None
+    column = joint.columns[number]
     width, height = column.size
-    disks = joint.positions[: column.disks] - column.origin
-    images = np.concatenate([disks + np.array([shift, 0.0]) for shift in (-width, 0.0, width)])
+    own = joint.positions[column.disks]
+    images = np.concatenate([own - column.origin + np.array([shift, 0.0]) for shift in (-width, 0.0, width)])
     local = places - [joint.origin[0], column.origin[1]]
     found = nearest(images, np.column_stack([local[:, 0] % width, local[:, 1]]))
     over = 0.5 * (column.extent[1] - height) + TYPED * height
-    return np.where((local[:, 1] >= -over) & (local[:, 1] <= height + over), found % column.disks, -1)
+    there = (local[:, 1] >= -over) & (local[:, 1] <= height + over)
+    return np.where(there, column.disks.start + found % len(own), -1)

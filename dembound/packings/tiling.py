@@ -10,9 +10,9 @@ from dembound.packings.brick import Brick
 
 
 class Column(NamedTuple):
-    """A column of bricks beside a body: number of its disks, and attributes with the names of an assembly's."""
+    """A column of bricks beside a body: the range of its disks, and attributes with the names of an assembly's."""
 
-    disks: int
+    disks: slice
     copies: tuple[int, int]
     size: np.ndarray
     extent: np.ndarray
@@ -34,9 +34,8 @@ class Assembly:
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
     extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. origin : (2,) m, the lower
-    left corner of its first brick. column : the column of bricks beside the body, whose disks come first, see
-    column.py; None: there is none. loose : number of disks left out because the cut at an open edge, or a hole, removed
-    all their connections to the body.
+    left corner of its first brick. columns : of bricks beside the body, whose disks come first, see column.py. loose :
+    number of disks left out because the cut at an open edge, or a hole, removed all their connections to the body.
     """
 
     positions: np.ndarray
@@ -49,7 +48,7 @@ class Assembly:
     size: np.ndarray
     extent: np.ndarray
     origin: np.ndarray = field(default_factory=lambda: np.zeros(2))
-    column: "Column | None" = None
+    columns: "tuple[Column, ...]" = ()
     loose: int = 0
 
     def part(self, disks: slice) -> "Assembly":
@@ -57,14 +56,14 @@ class Assembly:
         if disks == slice(0, len(self.radii)):
             return self
         chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
-        of = self if self.column is None or disks.stop > self.column.disks else self.column
+        of = next((each for each in self.columns if disks.stop <= each.disks.stop), self)
         return replace(
             self,
             copies=of.copies,
             size=of.size,
             extent=of.extent,
             origin=of.origin,
-            column=None,
+            columns=(),
             positions=self.positions[disks],
             radii=self.radii[disks],
             brick_particle=self.brick_particle[disks],

@@ -104,7 +104,7 @@ def test_a_box_beside_its_column(height: float) -> None:
     """
     plain = case(20.0, height, SIDES | {"bottom": {"type": "outside", "wave_s": "pulse"}}, 0.9)
     scene = build(plain)
-    column, disks = scene.seam.count, len(scene.assembly.radii)
+    column, disks = scene.column_count, len(scene.assembly.radii)
     up = scene.assembly.positions[:, 1]
     top = int(np.argmax(up[:column]))
     simulation = Simulation(scene, choose_step(scene)[0], [top])

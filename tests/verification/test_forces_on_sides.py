@@ -82,7 +82,7 @@ def test_a_free_field_side_carries_what_the_ground_beyond_it_does(lab):
     )
     simulation = lab.simulation(scene, settle(scene).start, side_stride=1)
     simulation.run(1)
-    found, column = forces(simulation), scene.seam.count
+    found, column = forces(simulation), scene.column_count
     body, beside = GRAVITY * scene.mass[column:].sum(), GRAVITY * scene.mass[:column].sum()
     total = sum(force for side, force in found.items() if not side.endswith(".free_field"))
     np.testing.assert_allclose(total, [0.0, body], rtol=0.0, atol=1e-4 * body)

@@ -67,7 +67,7 @@ def test_every_particle_moves_as_its_twin(lab, name):
     furthest = peak = 0.0
     while simulation.time < 0.15:
         simulation.advance(20)
-        apart = simulation.state.velocity - simulation.state.velocity[:, scene.seam.twin]
+        apart = simulation.state.velocity - simulation.state.velocity[:, scene.seams[0].twin]
         furthest = max(furthest, np.abs(apart[:2]).max())
         peak = max(peak, np.abs(simulation.state.velocity[:2]).max())
     assert peak > 0.45

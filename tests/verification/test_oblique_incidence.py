@@ -65,7 +65,7 @@ def test_straight_up_it_is_the_wave_that_enters_through_a_column(lab) -> None:
     step = min(choose_step(scene)[0] for scene in scenes)
     found = []
     for scene in scenes:
-        first = 0 if scene.seam is None else scene.seam.count
+        first = 0 if not scene.seams else scene.column_count
         disks = np.arange(first, scene.disk_count)[::29]
         found.append(Simulation(scene, step, disks).advance(int(DURATION / step))[:, :, 3:5])
     assert np.abs(found[0] - found[1])[int(0.3 / step) :].max() < 5e-3 * np.abs(found[1]).max()

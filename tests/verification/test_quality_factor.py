@@ -127,8 +127,8 @@ def test_a_settled_body_stays_at_rest_and_its_twins_move_as_it_does(sides: str) 
     assert moved.max() < 1e-12 * settled
     assert settled > 1e-5
 
-    body = np.arange(scene.seam.count, scene.disk_count)
-    twin = scene.seam.twin[body]
+    body = np.arange(scene.column_count, scene.disk_count)
+    twin = scene.seams[0].twin[body]
     of_disks = np.arange(scene.count) < scene.disk_count  # a continuum has the difference from the column
     simulation.state.velocity = np.outer([1e-3, 1e-3, 0.0], of_disks) * scene.moves
     simulation.run(1300)

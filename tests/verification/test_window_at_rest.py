@@ -36,13 +36,13 @@ def test_it_does(lab, box: str, pattern: str, fric: float, wave: str) -> None:
     scene = build(lab.window(pattern, BOXES[box], wave=wave, material={"fric": fric}))
     step = choose_step(scene)[0]
     simulation = Simulation(scene, step)
-    body = np.arange(scene.seam.count, scene.disk_count)
+    body = np.arange(scene.column_count, scene.disk_count)
     peak, beside, beyond = 0.0, 0.0, 0.0
     for part in range(1, 26):
         simulation.run(int(DURATION / step * part / 25))
         velocity = simulation.state.velocity
         peak = max(peak, np.abs(velocity[:2, body]).max())
-        beside = max(beside, np.abs(velocity[:, body] - velocity[:, scene.seam.twin[body]]).max())
+        beside = max(beside, np.abs(velocity[:, body] - velocity[:, scene.seams[0].twin[body]]).max())
         beyond = max(beyond, np.abs(velocity[:, scene.outside.nodes]).max())
 
     assert peak > (0.9 if BOXES[box][3] == 60.0 else 0.45)  # the pulse of 0.5 m/s, doubled at the surface

@@ -152,7 +152,7 @@ def _with_continuum(scene: DiskScene, box: Box) -> BoxOfDisks:
     settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
     surface, tops = (case.box[3], None) if "top" in sides else (None, expected_tops(case, box))
     grid = GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops))
-    first = 0 if scene.seam is None else scene.seam.count
+    first = scene.column_count
     places = scene.assembly.positions[first:]
     inside = int(np.count_nonzero(((places >= box[:2]) & (places <= box[2:])).all(axis=1)))
     moved = any(table.waves for table in case.boundary.values()) or case.static is not None

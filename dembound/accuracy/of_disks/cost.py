@@ -210,7 +210,7 @@ class Cost:
 def planned_cost(planned: Plan[DiskScene]) -> Cost:
     """The cost of a plan."""
     stepped = planned.stepped
-    column = 0 if stepped.seam is None else stepped.seam.count
+    column = stepped.column_count
     nodes = sum(beyond.count for beyond in stepped.continua)
     ties = sum(len(beyond.wall.element) for beyond in stepped.continua)
     seconds = step_cost.seconds_of(stepped, planned.steps)

@@ -149,7 +149,7 @@ def _particles(scene: DiskScene, copies: tuple[int, int]) -> int:
     case, brick = scene.case, scene.ground.brick
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
     count = scene.disk_count + count_disks(brick, copies, periodic) - count_disks(brick, case.packing.copies, periodic)
-    if scene.seam is None:
+    if not scene.seams:
         return count
     new, old = (count_disks(brick, (1, up), (True, False)) for up in (copies[1], case.packing.copies[1]))
     return count + new - old

@@ -115,9 +115,6 @@ def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     )
     if tables["incident"]:
         yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
-    for side, table in tables["boundary"].items():
-        for motion in table.waves if table and table.is_outside else ():
-            yield f"boundary.{side}.wave_{motion}: the motion far from the disks is not known, {no_half_space}"
     for place, load in numbered("load", tables["load"]):
         if load.is_everywhere and (load.wave is not None or not tables["static"]):
             yield f"{place}: acts on all disks, which needs a [static] stage and no wave, {no_half_space}"

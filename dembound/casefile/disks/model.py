@@ -14,7 +14,7 @@ from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
-from dembound.holes.hole import Floor, Hole
+from dembound.holes.hole import Floor, Hole, level_beside
 from dembound.packings.base import Packing
 from dembound.table import Box, Table, quantity
 
@@ -179,15 +179,28 @@ class DiskCase(Case):
 
         Beyond sides with a continuum there is a column if the ground has waves from below, a static stage, or a load on
         all of it. The continuum then computes only the difference from the column. Where the ground is lower beyond one
-        of the sides there is no column.
+        of the sides there is one only under waves.
         """
         if self.free_field_sides:
             return self.free_field_sides
-        if any(self.periodic) or lowered(self.floors, self.boundary):
+        driven = any(self.boundary[side].waves for side in self.outside_sides)
+        if any(self.periodic) or (lowered(self.floors, self.boundary) and not driven):
             return ()
         everywhere = any(load.is_everywhere for load in self.load)
-        driven = any(self.boundary[side].waves for side in self.outside_sides)
         return self.outside_sides if everywhere or driven or self.static is not None else ()
+
+    @property
+    def middle(self) -> float:
+        """Place x (m) of the middle of the slope between its left and right side, from which monitors are beside one.
+
+        That of the disks where the surface has one height.
+        """
+        box, diameter = self.packing.box, 2.0 * self.packing.radius
+        level = {
+            side: self.floors[side].width if side in self.floors else level_beside(self.hole, box, side, diameter)
+            for side in ("left", "right")
+        }
+        return 0.5 * (box[0] + level["left"] + box[2] - level["right"])
 
     @property
     def column_rows(self) -> tuple[int, int]:

@@ -257,7 +257,7 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     joined = {side: {"type": t.type} for side, t in case.boundary.items() if t.is_periodic or t.is_mirror}
     halved = {side: True for side, table in case.boundary.items() if table.half_cells}
     keys = {**tables, "load": loads, "boundary": sides | joined, "half_mass": halved}
-    if scene.outside is not None and scene.outside.twin is not None:
+    if scene.outside is not None and scene.outside.twins:
         keys["outside"] = case.outside.model_copy(update=scene.outside.settings.given)
         keys["outside_sides"] = scene.outside.sides
         if scene.ground.is_layered:

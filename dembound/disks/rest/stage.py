@@ -1,6 +1,6 @@
 """The static stage: a damped run that brings a body to rest under steady forces, and its end."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -193,20 +193,20 @@ def require_stages(scene: DiskScene) -> None:
     if (static := scene.case.static) is None:
         return
     for each in filter(None, (scene.before, scene)):
-        for built in (each, *([column_alone(each)] if each.seam is not None else [])):
+        for built in (each, *(column_alone(each, number) for number in range(len(each.seams)))):
             StaticScene(built, static)
 
 
 def stage_names(scene: DiskScene) -> list[str]:
     """The names of a scene's stages in the `Stages` that `settle` receives, in their order."""
     if scene.before is None:
-        return [*([_column("body")] if scene.seam is not None else []), "body"]
-    return [*([_column("before")] if scene.before.seam is not None else []), "before", "body"]
+        return [*_columns(scene, "body"), "body"]
+    return [*_columns(scene.before, "before"), "before", "body"]
 
 
-def _column(name: str) -> str:
-    """The name of the stage of the free-field column, which precedes the body's."""
-    return f"{name}.column"
+def _columns(scene: DiskScene, name: str) -> list[str]:
+    """The names of the stages of a scene's free-field columns, which precede the body's."""
+    return [f"{name}.{part}" for part in scene.parts if part != "body"]
 
 
 @dataclass(frozen=True)
@@ -220,12 +220,15 @@ class _Stage:
 
 
 def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
-    """Settle a body as built, after its free-field column."""
-    if scene.seam is None:
+    """Settle a body as built, after its free-field columns."""
+    columns = []
+    for number, key in enumerate(_columns(scene, stage.key)):
+        alone = replace(stage, key=key, name=f"{stage.name} of the free-field column alone")
+        columns.append(_settle(column_alone(scene, number), lambda: None, alone))
+    if not columns:
         return _settle(scene, lambda: None, stage)
-    alone = replace(stage, key=_column(stage.key), name=f"{stage.name} of the free-field column alone")
-    column = _settle(column_alone(scene), lambda: None, alone)
-    return replace(_settle(scene, lambda: _beside(scene, column.start), stage), column=column)
+    starts = [each.start for each in columns]
+    return replace(_settle(scene, lambda: _beside(scene, starts), stage), column=columns[0])
 
 
 def _excavate(scene: DiskScene, before: Start) -> Start:
@@ -239,15 +242,21 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
     return Start(before.displacement[:, scene.kept], contacts, before.has_history)
 
 
-def _beside(scene: DiskScene, column: Start) -> Start:
-    """The start of a body with a settled column: every particle and pair in the state of its twin."""
-    assert scene.seam is not None
-    displacement = column.displacement[:, scene.seam.twin]  # of the disks
-    contacts = contact_lists(scene) if column.contacts else {}
-    if column.has_history:
-        for pairs in contacts.values():
-            pairs.copy_twins(column.contacts["body"], scene.seam.twin[pairs.nodes], displacement)
-    return Start(displacement, contacts, column.has_history)
+def _beside(scene: DiskScene, columns: Sequence[Start]) -> Start:
+    """The start of a body with settled columns: every particle and pair in the state of its twin.
+
+    Beside two columns those of the body begin as built, as not all of them have a twin.
+    """
+    displacement, has_history = np.zeros((3, scene.disk_count)), any(each.has_history for each in columns)
+    contacts = contact_lists(scene) if columns[0].contacts else {}
+    twins = [seam.twin for seam in scene.seams]
+    for twin, seam, name, column in zip(twins, scene.seams, scene.parts, columns, strict=False):
+        own = np.arange(seam.disks.start, scene.disk_count if len(columns) == 1 else seam.disks.stop)
+        displacement[:, own] = column.displacement[:, twin[own] - seam.disks.start]
+        if has_history:
+            for pairs in [contacts[name], *([contacts["body"]] if len(columns) == 1 else [])]:
+                pairs.copy_twins(column.contacts["body"], twin[pairs.nodes] - seam.disks.start, displacement)
+    return Start(displacement, contacts, has_history)
 
 
 def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage) -> Settled:

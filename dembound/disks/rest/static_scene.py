@@ -176,8 +176,8 @@ def without_own_continua(scene: DiskScene) -> DiskScene:
 
     Continua tied by the motion relative to the free-field column stay, as a hole moves the ground round it.
     """
-    beyond = scene.outside if scene.outside is not None and scene.outside.twin is not None else None
-    return replace(scene, outside=beyond, foot=None)
+    beyond = scene.outside if scene.outside is not None and len(scene.seams) == 1 else None
+    return replace(scene, outside=beyond, feet=())
 
 
 def _require_loads_within(scene: DiskScene, static: DiskScene) -> None:

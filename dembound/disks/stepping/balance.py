@@ -226,7 +226,7 @@ def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
     """The particles of each side of a body that can rotate: not of a free-field column or a periodic body."""
     if any(table.is_periodic for table in scene.case.boundary.values()):
         return {}
-    first = 0 if scene.seam is None else scene.seam.count
+    first = scene.column_count
     sides = {}
     for side, edge in scene.edges.items():
         own = edge.nodes[edge.nodes >= first]
@@ -246,15 +246,15 @@ def _followers(
     node, side = _side_numbers(scene, sides)
     names = list(sides)
     rest = datum[:2, members].copy()
-    if scene.seam is not None:
-        rest -= datum[:2, scene.seam.twin[members]]
+    if scene.twin is not None:
+        rest -= datum[:2, scene.twin[members]]
     return Followers(
         opposite=np.array(
             [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names], np.int64
         ),
         start=np.cumsum([0, *(len(nodes) for nodes in sides.values())]),
         member=members,
-        twin=np.full(len(members), -1) if scene.seam is None else scene.seam.twin[members].copy(),
+        twin=np.full(len(members), -1) if scene.twin is None else scene.twin[members],
         arm=np.concatenate([np.zeros((2, 0)), *arms], axis=1),
         node=node,
         side=side,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries.edge import OPPOSITE, SIDES, normal_axis
-from dembound.disks.body import DiskBody
+from dembound.disks.body import COLUMNS, DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.scene_parts import DiskParts, contact_lists, disks_on_foot
 from dembound.packings.cut import cut_contacts
@@ -73,10 +73,9 @@ class RestForces:
         force, u = np.zeros_like(displacement), scene.layout.spread(displacement)
         for each in scene.continua:
             each.add_tie_forces(scene.layout, u, force)
-        if scene.foot is not None:
-            assert scene.twin is not None
+        if scene.feet:
             disks = disks_on_foot(scene)
-            force[:, disks] += force[:, scene.twin[disks]]
+            force[:, disks] += force[:, scene.seams[0].twin[disks]]
         return force
 
     def shift(self, datum: np.ndarray) -> np.ndarray:
@@ -111,7 +110,7 @@ def carriers_of(scene: DiskBody) -> list[Carrier]:
     """The carriers of all parts of a scene: disks exposed at a side, tied there, or with contacts beyond it."""
     found = []
     for name, nodes in scene.parts.items():
-        part, upright = scene.assembly.part(nodes), name == "column"
+        part, upright = scene.assembly.part(nodes), name in COLUMNS
         periodic = (True, False) if upright else scene.case.periodic
         cut = cut_contacts(scene.ground.brick, part, SIDES[2:] if upright else tuple(scene.edges), periodic)
         at = {}

@@ -232,19 +232,17 @@ def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
 
 def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Ends of contacts that act on disks of a part: the disk, that which has it, its neighbour, and 2·type + end."""
-    part, seam = scene.assembly.part(nodes), scene.seam
+    part = scene.assembly.part(nodes)
     first, second = part.pairs.T.astype(np.int64) + nodes.start
     owner, neighbour = np.concatenate([first, second]), np.concatenate([second, first])
     end = np.concatenate([2 * part.contact_type, 2 * part.contact_type + 1])
-    if seam is None or nodes.start == 0:
-        return owner, owner, neighbour, end
-    target = np.repeat(seam.node, seam.contact_counts)
-    return (
-        np.concatenate([owner, target]),
-        np.concatenate([owner, seam.twin[target]]),
-        np.concatenate([neighbour, seam.neighbour]),
-        np.concatenate([end, 2 * seam.contact_type + seam.twin_is_second]),
-    )
+    target = owner
+    for seam in scene.seams if nodes.start == scene.column_count else ():
+        beside = np.repeat(seam.node, seam.contact_counts)
+        target, owner = np.concatenate([target, beside]), np.concatenate([owner, seam.twin[beside]])
+        neighbour = np.concatenate([neighbour, seam.neighbour])
+        end = np.concatenate([end, 2 * seam.contact_type + seam.twin_is_second])
+    return target, owner, neighbour, end
 
 
 def _shares(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -55,7 +55,7 @@ def turns_freely(scene: DiskBody) -> bool:
     """Whether only dashpots resist the rigid rotation of a body."""
     held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
     periodic = any(table.is_periodic for table in scene.case.boundary.values())
-    return bool(scene.free.all()) and scene.seam is None and not held and not periodic
+    return bool(scene.free.all()) and not scene.seams and not held and not periodic
 
 
 def turned_as_a_whole(

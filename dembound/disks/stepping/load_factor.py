@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.disks.body import COLUMNS
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem
@@ -62,7 +63,7 @@ class LoadFactor(Every):
                 contact_type=kind.astype(np.uint32),
             )
             own = in_columns(columns, limits.geometry) if scene.ground.is_layered else limits
-            bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name == "column")
+            bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name in COLUMNS)
             strength = 1.0 if bonds is None else bonds.at(part.assembly.pairs[:, 0], part.assembly.contact_type)
             if scene.intact is not None:  # bonds that do not break have no limit
                 kept = scene.intact[part.nodes][part.assembly.pairs].any(axis=1)

@@ -260,6 +260,7 @@ class FreeFieldSeam(Tie):
         """Contact ends (e,) of the column's pairs of its particles' contacts across the seam, in the seam's order."""
         if self._ends is None or self._ends[0] is not contacts.arrays:
             owner, near, vectors = self.seam.pairs(contacts.ground.brick)
+            owner, near = owner - self.seam.disks.start, near - self.seam.disks.start
             _, pair = contacts.find(owner, near, vectors)
             image = contacts.images(owner, near, vectors)
             turned = (contacts.pairs[0][pair] != owner) | (contacts.image[pair] != image).any(axis=1)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.continuum.part import GridPart
-from dembound.disks.body import DiskBody, differs_by_level
+from dembound.disks.body import COLUMNS, DiskBody, differs_by_level
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
@@ -19,6 +19,7 @@ from dembound.disks.material.layered import LayeredGround
 from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
 from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
 from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.jump import nodes_on_slit
 from dembound.kernels.contacts import UPDATED
 from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
@@ -61,8 +62,10 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
     sides = zip((wide, high), scene.case.periodic, strict=True)
     along_x, along_y = (length if wraps else None for length, wraps in sides)
     held = None
-    if scene.seam is not None and name == "column":
-        along_x, held = scene.seam.width, scene.seam.pairs(scene.ground.brick)
+    if name in COLUMNS:
+        seam = scene.seams[COLUMNS.index(name)]
+        along_x, (first, second, vectors) = seam.width, seam.pairs(scene.ground.brick)
+        held = first - nodes.start, second - nodes.start, vectors
     part = scene.assembly.part(nodes)
     return ContactList(
         scene.ground,
@@ -75,7 +78,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _row_plan(scene, name, part),
         _layers(scene, part),
         scene.at_rest,
-        bond_factors(scene.case, scene.ground, part, alike=name == "column"),
+        bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
     )
@@ -145,36 +148,35 @@ class TwinTie(Tie):
 
 def disks_on_foot(scene: DiskBody) -> np.ndarray:
     """Disks (k,) of the body that have the forces of the foot on their twins in the column, ascending."""
-    if scene.foot is None or scene.seam is None:
+    if not scene.feet:
         return np.zeros(0, dtype=np.int64)
-    disks = np.arange(scene.seam.count, scene.disk_count)
-    return disks[np.isin(scene.seam.twin[disks], scene.foot.wall.bonds.particle)]
+    disks = np.arange(scene.column_count, scene.disk_count)
+    return disks[np.isin(scene.seams[0].twin[disks], scene.feet[0].wall.bonds.particle)]
 
 
 def tied_nodes(scene: DiskBody) -> np.ndarray:
     """Nodes (k,) of a scene that ties act on."""
     tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), disks_on_foot(scene)]
-    if scene.seam is not None:
-        tied.append(scene.seam.node)
-    return np.concatenate(tied)
+    return np.concatenate([*tied, *(seam.node for seam in scene.seams), nodes_on_slit(scene.outside)])
 
 
 def grids(scene: DiskBody, time_step: float, *, damped: bool) -> list[GridPart]:
     """The continua of a scene, as parts to be stepped by time_step (s); damped : whether their damping acts."""
+    named = [] if scene.outside is None else [(scene.outside, "continuum")]
+    named += zip(scene.feet, ("foot", "right_foot"), strict=False)
     return [
         GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes, damped=damped)
-        for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
-        if each is not None
+        for each, name in named
     ]
 
 
 def walls(scene: DiskBody) -> list[Tie]:
     """The ties of a scene to its continua, and the tie that repeats the forces of the column's foot on the body."""
     walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
-    if scene.foot is not None:
-        assert scene.twin is not None
-        foot, repeats = WallTie(scene.foot, scene.layout), TwinTie(disks_on_foot(scene), scene.twin)
-        walls = [foot, repeats, *walls]  # these forces are there before they are repeated
+    if scene.feet:
+        feet = [WallTie(foot, scene.layout) for foot in scene.feet]
+        repeats = TwinTie(disks_on_foot(scene), scene.seams[0].twin)
+        walls = [*feet, repeats, *walls]  # these forces are there before they are repeated
     return walls
 
 
@@ -189,7 +191,7 @@ class DiskParts:
 
     Attributes
     ----------
-    parts : the free-field column, if there is one, and the body. seams : one if there is a column. contacts : the pairs
+    parts : the free-field columns, if there are any, and the body. seams : one for each column. contacts : the pairs
     of each part by name, empty if the scene's law has no history. damped_ties : the memories of ties; None without ties
     or damping.
     """
@@ -211,7 +213,7 @@ class DiskParts:
             part.watches = watches
             part.dashes = time_step is not None
         self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
-        self.seams = () if scene.seam is None else (FreeFieldSeam(scene.seam, self.parts[0]),)
+        self.seams = tuple(map(FreeFieldSeam, scene.seams, self.parts))
         self.damped_ties = None if time_step is None else ties_remembering(scene, tied_nodes(scene), time_step)
 
     @property

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.body import DiskBody
+from dembound.disks.body import COLUMNS, DiskBody
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
 from dembound.errors import RunError
@@ -104,8 +104,8 @@ class SideWatch:
             if len(first) == 0:
                 continue
             for row, place in enumerate(self._places):
-                if part == "column" or place == COLUMN:
-                    count = len(first) if part == "column" and place == COLUMN else 0
+                if part in COLUMNS or place == COLUMN:
+                    count = len(first) if part in COLUMNS and place == COLUMN else 0
                 else:
                     zone = self._scene.intact_zones[place] - pairs.nodes.start
                     count = int(np.count_nonzero(np.isin(first, zone) | np.isin(second, zone)))

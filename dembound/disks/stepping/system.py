@@ -15,6 +15,7 @@ from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
 from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
 from dembound.disks.stepping.side_watch import SideWatch
+from dembound.disks.surroundings.jump import JumpTie
 from dembound.kernels.common import BROKE, LAW_ENDS
 from dembound.kernels.follower import turn_forces
 from dembound.motion.state import Arrays, State, arrays_of_owner
@@ -60,6 +61,8 @@ class DiskSystem(RecordedDisks):
         self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
         if self._bearing is not None:
             ties.append(self._bearing)
+        if len(scene.feet) > 1 and scene.outside is not None and not settling:
+            ties.append(JumpTie(scene.outside, scene.feet, scene.layout, time_step))
         super().__init__(
             scene,
             disks,

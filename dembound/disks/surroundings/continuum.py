@@ -12,6 +12,7 @@ from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks.layer import CONTINUUM
 from dembound.continuum.edges import free_edges
+from dembound.continuum.interpolation import located
 from dembound.continuum.medium import Ground, Layered
 from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
@@ -43,8 +44,9 @@ class Surroundings:
     sides : with a continuum. settings : as given or chosen. body : elements, medium and layers. wall : the ties of cut
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : depth of free
-    edges below those of the packing, m, by side. levels : lower ground beyond left and right sides. twin : (m,) for
-    each disk its twin in the free-field column, relative to which it is tied; None: tied by its own motion.
+    edges below those of the packing, m, by side. levels : lower ground beyond left and right sides. twins : (m,) for
+    each disk its twin in a free-field column, relative to which it is tied, of two columns in the first at the left and
+    below and in the second at the right; none: tied by its own motion.
     surface_mass : kg/m², of the skin on its upper edge.
     """
 
@@ -56,7 +58,7 @@ class Surroundings:
     box: Box
     skins: Mapping[str, float]
     levels: Mapping[str, Level]
-    twin: np.ndarray | None = None
+    twins: tuple[np.ndarray, ...] = ()
     surface_mass: float = 0.0
 
     @property
@@ -68,6 +70,11 @@ class Surroundings:
         """Whether places (k, 2) m are outside the body's box, (k,)."""
         low, high = np.array(self.box[:2]), np.array(self.box[2:])
         return np.any((places < low - self._near) | (places > high + self._near), axis=1)
+
+    def is_right(self, places: np.ndarray) -> np.ndarray:
+        """Whether the elements at places (k, 2) m are right of the body, also below it, (k,)."""
+        right: np.ndarray = self.body.mesh.is_right[located(self.body.mesh, places)[0]]
+        return right
 
     def height_at(self, places: np.ndarray) -> np.ndarray:
         """Heights (k,) m up to which there is ground at places (k, 2) m beyond lower sides; infinite at others."""
@@ -176,9 +183,11 @@ class Surroundings:
         """The ties for the kernels; supported (k,) are the nodes of the support table, ascending."""
         line = np.zeros(layout.count, dtype=np.int64)
         line[layout.slot[supported]] = np.arange(len(supported))
-        return self.wall.ties(
-            layout.slot, layout.slot[self.nodes], line, None if self.twin is None else layout.slot[self.twin]
-        )
+        twins = None
+        if self.twins:
+            disk, right = self.wall.bonds.particle, self.wall.bonds.side == SIDES.index("right")
+            twins = layout.slot[np.where(right, self.twins[-1][disk], self.twins[0][disk])]
+        return self.wall.ties(layout.slot, layout.slot[self.nodes], line, twins)
 
     def add_tie_forces(self, layout: Layout, u: np.ndarray, force: np.ndarray) -> None:
         """Add the forces (3, n) of its ties on all nodes of the scene at displacements u (3, slots), at rest."""
@@ -196,7 +205,8 @@ class Surroundings:
             builder.add(self.first + self.body.mesh.on_mirrors(axis), axis, prescribed=True)
         others = builder.nodes
         others = others[(others >= self.nodes.start) & (others < self.nodes.stop)]
-        builder.add(np.union1d(self.first + self.wall.nodes, others), 2, prescribed=True)
+        tied = np.union1d(self.wall.nodes, np.concatenate(self.body.mesh.doubled))
+        builder.add(np.union1d(self.first + tied[~self.body.mesh.held[tied]], others), 2, prescribed=True)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.
@@ -204,7 +214,7 @@ class Surroundings:
         It fills the forces on the continuum, and adds those of the ties times the factor to all.
         """
         slot, tied = self.body.blocks.slot, layout.slot[self.tied]
-        ties = replace(self, twin=None).ties(layout, self.tied)  # twins do not move with the body
+        ties = replace(self, twins=()).ties(layout, self.tied)  # twins do not move with the body
         own, rest = aligned_zeros(3, layout.count), aligned_zeros(3, layout.count)
         of_ties = np.zeros((len(tied), 3))
 
@@ -224,12 +234,13 @@ def surroundings_of(
     outline: Outline,
     layout: Layout,
     first: int = 0,
-    twin: np.ndarray | None = None,
+    twins: tuple[np.ndarray, ...] = (),
+    inner: float | None = None,
 ) -> Surroundings:
     """The continuum with an outline round a body.
 
-    layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) for
-    each disk its twin in the free-field column; None without a column.
+    layout : of the nodes before its own, of which the body's disks are those from number `first` on. twins : see
+    `Surroundings`. inner : see `GridBody`.
 
     Raises CaseError if the packing's sides cut no bonds, and for a body so thin that one side is no disk's first.
     """
@@ -248,6 +259,7 @@ def surroundings_of(
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
         first_slot=-(-layout.count // LANES) * LANES,
+        inner=inner,
     )
     density = grid.own_mass / (grid.thickness * mesh.areas) if ground.is_layered else ground.density
     grid = replace(grid, added_mass=mass_of(massless, mesh, density))
@@ -255,7 +267,7 @@ def surroundings_of(
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     surface_mass = rim.massless.get("top", 0.0) * ground.at(rim.surface or rim.box[3]).density
     found = Surroundings(
-        sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twin, surface_mass
+        sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twins, surface_mass
     )
     if thin := [side for side in sides if len(found.tied_by_side[side]) == 0]:
         said = "has no disk that is not tied by another side; make the body two disks wide and high, or more"

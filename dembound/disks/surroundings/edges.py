@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -57,20 +57,25 @@ def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
     return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
 
 
-def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
-    """The sides of a body with its free-field column: bottom and top include the column, left and right do not.
+def edges_beside_columns(assembly: Assembly, seams: Sequence[Seam], edges: Mapping[str, Edge]) -> dict[str, Edge]:
+    """The sides of a body with its free-field columns: bottom and top include the columns, left and right do not.
 
-    The disks visible from below or above are determined in the column, as if there were no sides, so that every disk of
-    the body is supported like its twin.
+    The disks visible from below or above are determined in the columns, as if there were no sides, so that every disk
+    of the body is supported like its twin. Beside two columns those visible from above are those of the body alone.
     """
-    column = np.arange(len(assembly.radii)) < seam.count
-    joint = {}
+    first, joint = seams[-1].disks.stop, {}
     for side, edge in edges.items():
-        nodes, length = edge.nodes + seam.count, edge.length
+        nodes, length = edge.nodes + first, edge.length
         if edge.axis == 1:
-            alone = exposed(assembly.positions[column], assembly.radii[column], side, period=seam.width)
-            nodes = np.flatnonzero(np.isin(seam.twin, alone))
-            length += seam.width
+            each = [
+                seam.disks.start
+                + exposed(assembly.positions[seam.disks], assembly.radii[seam.disks], side, period=seam.width)
+                for seam in seams
+            ]
+            if side == "bottom" or len(seams) == 1:
+                nodes = np.flatnonzero(np.isin(seams[0].twin, each[0]))
+            nodes = np.unique(np.concatenate([nodes, *each[1:]]))
+            length += sum(seam.width for seam in seams)
         joint[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
     return joint
 

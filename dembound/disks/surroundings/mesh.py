@@ -14,7 +14,7 @@ from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.layer import LONG_WAVES
 from dembound.continuum.medium import Ground, Layered, Medium
-from dembound.continuum.mesh import WHOLE, Mesh
+from dembound.continuum.mesh import WHOLE, Around, Mesh
 from dembound.disks.material.free_surface import inset
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
@@ -185,8 +185,12 @@ class Outline(NamedTuple):
         sides: Sequence[str],
         periodic: tuple[bool, bool],
         floors: Mapping[str, Floor] = NO_FLOORS,
+        *,
+        slit: bool = False,
     ) -> Outline:
         """The outline of a body that is periodic along some axes, with floors at its left and right side.
+
+        slit : see `Mesh`.
 
         Raises CaseError for settings with which there is no mesh.
         """
@@ -205,7 +209,27 @@ class Outline(NamedTuple):
             mirrors=mirrors,
             ground=medium_of(ground),
         )
-        return cls(tuple(sides), size, rim, mesh)
+        return cls(tuple(sides), size, rim, replace(mesh, slit=True) if slit else mesh)
+
+    @classmethod
+    def below(cls, case: DiskCase, ground: PackedMaterial, column: Assembly, beside: Outline) -> Outline:
+        """The outline below a free-field column, one element wide, with rows as those below a body beside it."""
+        extent, mesh = mass_extent(ground, column), beside.mesh
+        assert mesh.box is not None
+        width = max(float(extent[0]), least_element(case, ground.brick.mean_diameter))
+        box = np.array([width, extent[1]])
+        size = ElementSizes(beside.size.settings, box, (width, beside.size.element[1]), (True, False))
+        rim, rows = Rim.of(case, ground, column, ("bottom",), size, NO_FLOORS), mesh.box[1]
+        own = Mesh(
+            order=mesh.order,
+            widths=(width,),
+            heights=(*mesh.heights[:rows], rim.box[3] - rim.box[1]),
+            origin=(rim.box[0], mesh.origin[1]),
+            box=(0, rows, 1, rows + 1),
+            layer=Around(bottom=mesh.layer.bottom),
+            periodic=(True, False),
+        )
+        return cls(("bottom",), size, rim, own)
 
 
 def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:

@@ -23,8 +23,7 @@ class RecordedContinuum(Beside):
     ----------
     outside : the continuum.
     waves : the motion of the ground without the body; None without any.
-    disks : the scene's disks, those of its free-field column first. column : number of column disks, 0 without a
-    column.
+    disks : the scene's disks, those of its free-field columns first.
     mass : (n,) kg, of the scene's nodes. diameter : m, mean of the brick's disks.
     """
 
@@ -33,13 +32,12 @@ class RecordedContinuum(Beside):
         outside: Surroundings,
         waves: Undisturbed | None,
         disks: Assembly,
-        column: int,
         mass: np.ndarray,
         diameter: float,
     ) -> None:
         self.nodes = outside.nodes
         self._outside, self._waves = outside, waves
-        self._disks, self._column, self._mass, self._diameter = disks, column, mass, diameter
+        self._disks, self._mass, self._diameter = disks, mass, diameter
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
@@ -62,7 +60,8 @@ class RecordedContinuum(Beside):
             return {"": own}
         total = own.copy()
         if self._twin is not None:
-            total += self._ground.at_heights(values[: self._column]) * (self._twin >= 0)[:, None]
+            for there, ground, column in zip(self._beside, self._grounds, self._disks.columns, strict=True):
+                total += np.where(there[:, None], ground.at_heights(values[column.disks]), 0.0)
         if self._waves is not None:
             total += self._waves.motion(of, np.array([time]), self._outside.body.mesh.positions)[0]
         return {"": total, "scattered_": own}
@@ -70,7 +69,16 @@ class RecordedContinuum(Beside):
     @property
     def _is_scattered(self) -> bool:
         """Whether the continuum has the scattered motion only, without the ground's own motion."""
-        return self._column > 0 or self._waves is not None
+        return bool(self._disks.columns) or self._waves is not None
+
+    @cached_property
+    def _numbers(self) -> np.ndarray:
+        """The number (m,) of the free-field column that each node moves relative to."""
+        mesh = self._outside.body.mesh
+        number = np.zeros(mesh.count, dtype=np.int64)
+        if len(self._disks.columns) > 1:
+            number[mesh.nodes[mesh.is_right].ravel()] = 1  # none of them are also of other elements
+        return number
 
     @cached_property
     def _twin(self) -> np.ndarray | None:
@@ -78,11 +86,26 @@ class RecordedContinuum(Beside):
 
         −1 for nodes below the ground that the column represents.
         """
-        return nearest_in_column(self._disks, self._outside.body.mesh.positions) if self._column > 0 else None
+        if not self._disks.columns:
+            return None
+        places, twin = self._outside.body.mesh.positions, np.full(self._outside.count, -1)
+        for number in range(len(self._disks.columns)):
+            own = self._numbers == number
+            twin[own] = nearest_in_column(self._disks, places[own], number)
+        return twin
+
+    @property
+    def _beside(self) -> list[np.ndarray]:
+        """Whether each node (m,) moves relative to each of the columns, at its height."""
+        assert self._twin is not None
+        there = self._twin >= 0
+        return [there & (self._numbers == number) for number in range(len(self._disks.columns))]
 
     @cached_property
-    def _ground(self) -> GroundMotion:
-        """The ground's motion at the nodes, from the motion of the column."""
-        column = slice(0, self._column)
-        up, heights = self._disks.positions[column, 1], self._outside.body.mesh.positions[:, 1]
-        return GroundMotion(up, self._mass[column], self._diameter, heights)
+    def _grounds(self) -> list[GroundMotion]:
+        """The motion of the ground at the nodes, from that of each column."""
+        heights = self._outside.body.mesh.positions[:, 1]
+        return [
+            GroundMotion(self._disks.positions[column.disks, 1], self._mass[column.disks], self._diameter, heights)
+            for column in self._disks.columns
+        ]

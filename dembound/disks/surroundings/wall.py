@@ -25,6 +25,7 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.boundaries.edge import SIDES
 from dembound.continuum.interpolation import located
 from dembound.continuum.mesh import Mesh
 from dembound.disks.material.layered import LayeredGround
@@ -62,7 +63,7 @@ class Wall:
 
         The mean is for elements with less than one disk per node, which single bonds would indent.
         """
-        element, local = located(mesh, bonds.point)
+        element, local = located(mesh, bonds.point, bonds.side == SIDES.index("right"))
         inside = np.clip(local, -1.0, 1.0)
         bonds = bonds.read_at(bonds.point + 0.5 * (inside - local) * mesh.element_sizes[element])
         inside = np.where(1.0 - np.abs(inside) < ROUNDING, np.sign(inside), inside)
@@ -139,7 +140,8 @@ class Wall:
         """The arrays for the kernels.
 
         particle : (n,) slot of every disk of the body; node : (m,) slot of every node of the mesh; line : (slots,) line
-        of slots in the support table; twin : (n,) slot of every disk's twin in the free-field column, None for none.
+        of slots in the support table; twin : (t,) slot of the twin of every tie's disk in a free-field column, None for
+        none.
         """
         bonds, mesh = self.bonds, self.mesh
         start, place = self._blocks
@@ -161,7 +163,7 @@ class Wall:
         own[place] = particle[bonds.particle]
         twins = np.full(lanes, -1)
         if twin is not None:
-            twins[place] = twin[bonds.particle]
+            twins[place] = twin
         nodes = node[mesh.nodes[self.elements]].reshape(len(self.elements), -1)
         return WallTies(
             points=tuple(mesh.rule.points.tolist()),

@@ -101,7 +101,7 @@ def _late(scene: DiskScene, side: str, motions: list[Motion]) -> dict[Motion, fl
     """Distances (m) by which waves enter late at a side."""
     table = scene.case.side(side)
     if table.is_outside:
-        beneath = scene.outside if scene.foot is None else scene.foot
+        beneath = scene.feet[0] if scene.feet else scene.outside
         assert beneath is not None
         number = ("left", "bottom", "right", "top").index(side)
         return dict.fromkeys(motions, -_inwards(side) * (beneath.box[number] - scene.case.box[number]))

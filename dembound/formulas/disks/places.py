@@ -31,7 +31,7 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     Nine disks, or three in a column or row where nine are not available, or only the nearest disk. Disks on the rim of
     a hole are left out: where the scene is moved, rounding may put them into the hole.
     """
-    first, cell = 0 if scene.seam is None else scene.seam.count, scene.ground.brick.mean_diameter
+    first, cell = scene.column_count, scene.ground.brick.mean_diameter
     disks = scene.positions[first : scene.disk_count]
     disks = disks[~_on_rims(scene.case, disks, ROUNDED * cell)]
     own = disks[nearest(disks, place[None])[0]]

@@ -192,6 +192,40 @@ class DampedGrid(NamedTuple):
     power: np.ndarray
 
 
+class Jump(NamedTuple):
+    """The jump D = u_L − u_R across the slit of a grid, along E elements of N points; see kernels/jump.py.
+
+    Of the nodes on the slit from the bottom up, n = E(N − 1) + 1: left, right : (n,) slots of nodes that move by u_L
+    and u_R less the incident motion. node, copy : (n,) slots of the nodes left and right of the slit; line, copy_line :
+    (n,) theirs in the support table. first : of the nodes that move.
+    slope : (E, N, N) 1/m, d/dy at points. weight : (E, N) m², of the quadrature along y times the thickness. moduli :
+    (E, 6) as of `Shape`. decay, gain, delay : (E, N), B, A and τ (s) along y as of `Absorber`. factors : (E, 2, K) e
+    and g of K mechanisms. strain_memory : (E, N, 2) ψ of ∂_y D. memory : (E, N, 2, K) N. traction (n, 2) N, moved
+    (2, N), strain, stress (2,) : work space.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    node: np.ndarray
+    copy: np.ndarray
+    line: np.ndarray
+    copy_line: np.ndarray
+    first: int
+    slope: np.ndarray
+    weight: np.ndarray
+    moduli: np.ndarray
+    decay: np.ndarray
+    gain: np.ndarray
+    delay: np.ndarray
+    factors: np.ndarray
+    strain_memory: np.ndarray
+    memory: np.ndarray
+    traction: np.ndarray
+    moved: np.ndarray
+    strain: np.ndarray
+    stress: np.ndarray
+
+
 class TieMemories(NamedTuple):
     """Memories of the forces of all ties on t supported nodes.
 

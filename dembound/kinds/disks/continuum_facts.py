@@ -111,8 +111,9 @@ def continuum_facts(scene: DiskScene) -> Entries:
             "its free edges",
             ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items()),
         )
-    if scene.foot is not None:
-        yield "below the column", f"{_elements(scene.foot)}; through it waves enter and leave"
+    for foot in scene.feet[:1]:
+        column = "column" if len(scene.feet) == 1 else "column of each side"
+        yield f"below the {column}", f"{_elements(foot)}; through it waves enter and leave"
     yield "absorbing layers", _layers(outside, signals)
     yield "continuum cost", _cost(scene)
     if signals and not any(sizing.jumps(signal) for signal in signals):

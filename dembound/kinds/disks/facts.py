@@ -75,7 +75,7 @@ def _monitor_facts(scene: DiskScene) -> Entries:
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")
-        column = "the ground without the body" if scene.seam is None else f"in the free-field column {twin}"
+        column = "the ground without the body" if not scene.seams else f"in the free-field column {twin}"
         beside = "" if twin is None else f", {column}"
         yield f"monitor {name}", f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
 

@@ -160,7 +160,7 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
 def _hangs(scene: DiskScene) -> Iterator[str]:
     """Supports of the static stage that are not there in the run, where reactions alone bear the steady loads."""
     case, static = scene.case, scene.case.static
-    if static is None or scene.seam is not None or scene.outside is not None:
+    if static is None or scene.seams or scene.outside is not None:
         return
     rows = scene.supports
     borne = set(rows.component[rows.prescribed | (rows.stiffness > 0.0) | (rows.damping > 0.0)].tolist())

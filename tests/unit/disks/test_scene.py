@@ -86,7 +86,7 @@ def test_each_monitor_has_a_twin_in_the_column(ground) -> None:
     for name, place in (("wall", [0.25, 1.25]), ("crown", [2.25, 2.75])):
         node, twin = scene.monitors[name], scene.monitors[f"{name}.free_field"]
         assert scene.assembly.positions[node].tolist() == place
-        assert twin == scene.seam.twin[node] < scene.seam.count
+        assert twin == scene.seams[0].twin[node] < scene.column_count
         assert scene.assembly.positions[twin, 1] == place[1]
 
 
@@ -102,7 +102,7 @@ def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str
     scene = hollow(0.3 * width, 0.7 * width)
     whole = build(ground(pattern))
     assert scene.count < whole.count
-    assert np.array_equal(scene.seam.neighbour, whole.seam.neighbour)
+    assert np.array_equal(scene.seams[0].neighbour, whole.seams[0].neighbour)
     for side, left, right in (("left", -1.0, 0.1 * width), ("right", 0.9 * width, width + 1.0)):
         with pytest.raises(CaseError, match=rf"hole\[1, niche\]: reaches boundary.{side}, where the free field has no"):
             hollow(left, right)
@@ -125,12 +125,12 @@ def test_the_continuum_reaches_from_the_box_to_the_surface() -> None:
     shaken = scene({"boundary.bottom.wave_s": "w"})
     mesh = shaken.outside.body.mesh
     offset = shaken.ground.brick.mass_offset
-    assert box_of(shaken.assembly.part(slice(shaken.seam.count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
+    assert box_of(shaken.assembly.part(slice(shaken.column_count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
     assert shaken.outside.box == (14.0, 6.0, 26.0, 18.0)
     surface = 30.0 + offset[1]
     assert mesh.positions[:, 1].max() == pytest.approx(surface, abs=0.5)  # less the packing's skin
     assert mesh.positions[:, 1].min() == pytest.approx(6.0 + offset[1] - 4 * 6.0, abs=1e-9)
-    assert (shaken.foot.box[1], shaken.foot.sides) == (0.0, ("bottom",))
+    assert (shaken.feet[0].box[1], shaken.feet[0].sides) == (0.0, ("bottom",))
 
 
 def test_a_hole_that_reaches_a_side_is_refused() -> None:
@@ -152,7 +152,7 @@ def test_between_box_and_surface_there_is_room_for_an_element() -> None:
 
 def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
     scene = build(ground(**{"boundary.bottom.half_mass": True}))
-    seam, whole = scene.seam, len(scene.ground.brick.pairs)
+    seam, whole = scene.seams[0], len(scene.ground.brick.pairs)
     halves = scene.edges["bottom"].nodes
     low = scene.assembly.positions[np.repeat(seam.node, seam.contact_counts), 1] == 0.25
 
@@ -185,13 +185,13 @@ def test_a_column_alone_has_what_it_has_beside_the_body(ground, pattern: str, ha
     niche = {"name": "niche", "type": "circle", "centre": [2.0, 1.5], "radius": 0.4}
     stage = {"boundary": {"left": {"type": "roller"}, "bottom": {"type": "fixed"}}}
     scene = build(ground(pattern, boundary=sides, load=EVERYWHERE + HERE, static=stage, hole=[niche]))
-    column, count = column_alone(scene), scene.seam.count
+    column, count = column_alone(scene), scene.column_count
     shift = scene.positions[:count] - column.positions
 
     # one shift for all, rounded as places of 10 m are
     np.testing.assert_allclose(shift, np.broadcast_to([shift[0, 0], 0.0], shift.shape), rtol=0.0, atol=1e-14)
     assert np.array_equal(column.mass, scene.mass[:count])
-    assert (column.count, column.size[0], column.seam) == (count, scene.seam.width, None)
+    assert (column.count, column.size[0], column.seams) == (count, scene.seams[0].width, ())
     theirs, ours = scene.supports, column.supports
     below = theirs.node < count
     for name in ("node", "component", "damping", "stiffness", "prescribed"):
@@ -207,7 +207,7 @@ def test_a_column_alone_has_what_it_has_beside_the_body(ground, pattern: str, ha
     for side, edge in column.edges.items():
         nodes = scene.edges[side].nodes
         assert np.array_equal(np.sort(edge.nodes), nodes[nodes < count])
-        assert edge.length == scene.seam.width
+        assert edge.length == scene.seams[0].width
     assert {side: table.type for side, table in column.case.static.boundary.items()} == {"bottom": "fixed"}
     types = {"left": "periodic", "right": "periodic", "bottom": "viscous_input", "top": "viscous"}
     assert {side: table.type for side, table in column.case.boundary.items()} == types

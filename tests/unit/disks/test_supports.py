@@ -16,7 +16,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.supports import forces_of
 from dembound.errors import CaseError
 from dembound.kinds.disks.facts import disk_facts
-from dembound.packings.column import with_column
+from dembound.packings.column import Standing, with_columns
 from dembound.packings.tiling import Assembly
 from dembound.running import plan, warnings_before
 
@@ -199,16 +199,16 @@ def test_below_the_ground_that_waves_enter_there_is_no_monitor() -> None:
 def test_beside_a_column_the_motion_of_the_twin_is_added() -> None:
     places = {"left": (-2.3, 2.2), "right": (11.1, 1.1), "in": (4.0, 2.0)}
     scene = scene_of(places, {"packing": grains(8.0, 4.0, 0.5, 4.0, 0)})
-    joint, seam = with_column(scene.ground.brick, scene.assembly, ("left", "right"))
+    joint, (seam,) = with_columns(scene.ground.brick, scene.assembly, (Standing(("left", "right")),))
     outside = replace(scene.outside, first=len(joint.radii))
-    monitors, between = monitors_of(scene.case, scene.ground, joint, seam, outside)
+    monitors, between = monitors_of(scene.case, scene.ground, joint, (seam,), outside)
 
     assert list(monitors) == [*places, *(f"{name}.free_field" for name in places)]
     assert list(between) == ["left", "right"]
     for name, place in between.items():
         twin = monitors[f"{name}.free_field"]
-        assert twin < seam.count
-        apart = joint.positions[twin] - joint.positions[0] - (place.place - joint.positions[seam.count])
+        assert twin < seam.disks.stop
+        apart = joint.positions[twin] - joint.positions[0] - (place.place - joint.positions[seam.disks.stop])
         np.testing.assert_allclose(apart[1], 0.0, atol=1e-9)  # at the same height, at the same place of the brick
         np.testing.assert_allclose((apart[0] + 1e-9) % 4.0, 0.0, atol=1e-8)
         assert place.node[-1] == twin

@@ -172,8 +172,8 @@ def test_motion_of_the_ground_without_the_body_meets_no_force(sides) -> None:
     body = scene(sides)
     rng = np.random.default_rng(1)
     own = np.repeat(rng.uniform(-1.0, 1.0, (3, 1)), body.count, axis=1)
-    if body.seam is not None:
-        own = rng.uniform(-1.0, 1.0, (3, body.count))[:, body.seam.twin]
+    if body.seams:
+        own = rng.uniform(-1.0, 1.0, (3, body.count))[:, body.seams[0].twin]
     assert np.abs(forces(body, own)).max() < 1e-15 * body.bearing.stiffness.max() * len(body.bearing.node)
 
 

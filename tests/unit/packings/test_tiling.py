@@ -8,7 +8,7 @@ import pytest
 from dembound.errors import PackingError
 from dembound.packings import Square
 from dembound.packings.brick import Brick
-from dembound.packings.column import nearest_in_column, with_column
+from dembound.packings.column import Standing, nearest_in_column, with_columns
 from dembound.packings.cut import CutContacts, cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
@@ -228,42 +228,42 @@ def any_brick(request) -> Brick:
 def test_column_and_body_stand_side_by_side_in_one_assembly(dense_brick):
     body = tile(dense_brick, (2, 3), OPEN)
     column = tile(dense_brick, (1, 3), (True, False))
-    joint, seam = with_column(dense_brick, body, BOTH)
+    joint, (seam,) = with_columns(dense_brick, body, (Standing(BOTH),))
 
-    assert seam.count == len(column.radii)
+    assert seam.disks.stop == len(column.radii)
     assert seam.width == dense_brick.size[0]
-    assert np.array_equal(joint.positions[seam.count :], body.positions)
+    assert np.array_equal(joint.positions[seam.disks.stop :], body.positions)
     for name in ("radii", "brick_particle", "contact_type"):
         assert np.array_equal(getattr(joint, name), np.concatenate([getattr(column, name), getattr(body, name)]))
-    assert np.array_equal(joint.pairs, np.concatenate([column.pairs, body.pairs + seam.count]))
+    assert np.array_equal(joint.pairs, np.concatenate([column.pairs, body.pairs + seam.disks.stop]))
     assert joint.pairs.dtype == body.pairs.dtype
     # the scene is the body's; the column is out of its way
     assert np.array_equal(joint.size, body.size)
-    assert (joint.positions[: seam.count, 0] + joint.radii[: seam.count]).max() < (
+    assert (joint.positions[: seam.disks.stop, 0] + joint.radii[: seam.disks.stop]).max() < (
         body.positions[:, 0] - body.radii
     ).min()
 
 
 def test_disks_that_a_side_cuts_loose_stand_in_the_column_and_others_are_refused(dangling_brick, random_brick):
     body = tile(dangling_brick, (2, 1), OPEN)
-    joint, seam = with_column(dangling_brick, body, BOTH)
+    joint, (seam,) = with_columns(dangling_brick, body, (Standing(BOTH),))
     assert body.loose == joint.loose == 1
-    assert seam.count == 3
+    assert seam.disks.stop == 3
     # a row of the first disk is the larger part of a wide body, a stack of the second that of a column
     brick = made_by_hand((1.0, 1.0), [0.3, 0.2], [(0, 0, 1, 0), (1, 1, 0, 1)])
     with pytest.raises(PackingError, match="4 disks of the body have no twin in the free-field column"):
-        with_column(brick, tile(brick, (4, 2), OPEN), BOTH)
+        with_columns(brick, tile(brick, (4, 2), OPEN), (Standing(BOTH),))
     for rows in ((-1, 7), (5, 7)):
         with pytest.raises(PackingError, match="have no twin in the free-field column"):
-            with_column(random_brick, tile(random_brick, (2, 3), OPEN), BOTH, rows)
+            with_columns(random_brick, tile(random_brick, (2, 3), OPEN), (Standing(BOTH),), rows)
 
 
 def test_a_column_of_more_rows_than_the_body_has_its_twins_at_the_same_height(dense_brick):
     body = tile(dense_brick, (2, 3), OPEN, (30.0, 2 * dense_brick.size[1]))
-    joint, seam = with_column(dense_brick, body, BOTH, rows=(2, 7), beside=(-5.0, 0.0))
-    count = seam.count
-    assert count == joint.column.disks == len(tile(dense_brick, (1, 7), (True, False)).radii)
-    assert joint.column.copies == (1, 7)
+    joint, (seam,) = with_columns(dense_brick, body, (Standing(BOTH),), rows=(2, 7), beside=(-5.0, 0.0))
+    count = seam.disks.stop
+    assert count == joint.columns[0].disks.stop == len(tile(dense_brick, (1, 7), (True, False)).radii)
+    assert joint.columns[0].copies == (1, 7)
     body_y, twin_y = joint.positions[count:, 1], joint.positions[seam.twin[count:], 1]
     np.testing.assert_allclose(twin_y, body_y, rtol=0.0, atol=1e-12)
     assert np.array_equal(joint.brick_particle[seam.twin], joint.brick_particle)
@@ -278,7 +278,7 @@ def test_a_column_of_more_rows_than_the_body_has_its_twins_at_the_same_height(de
 def test_beyond_all_four_sides_are_the_column_s_own_disks(any_brick, rows):
     """Every cut contact is one of the column; where the column ends there is none beyond."""
     body = tile(any_brick, (3, 3), OPEN, (0.0, rows[0] * float(any_brick.size[1])))
-    joint, seam = with_column(any_brick, body, ("left", "right", "bottom", "top"), rows)
+    joint, (seam,) = with_columns(any_brick, body, (Standing(("left", "right", "bottom", "top")),), rows)
     owner, other, vectors = seam.pairs(any_brick)
     column = tile(any_brick, (1, rows[1]), (True, False))
     up = column.tile[other, 1] - column.tile[owner, 1]
@@ -298,7 +298,7 @@ def test_beyond_all_four_sides_are_the_column_s_own_disks(any_brick, rows):
 def test_places_between_rows_have_the_lower_disk_of_the_column(size):
     """However far away they are, where their coordinates are rounded otherwise."""
     brick = Square(pattern="A", size=(2 * size, 9 * size), radius=0.5 * size).pack(1.0)
-    joint, _ = with_column(brick, tile(brick, (2, 9), (False, False)), ("left", "right"))
+    joint, _ = with_columns(brick, tile(brick, (2, 9), (False, False)), (Standing(("left", "right")),))
     rows = np.arange(1, 9)
     for away in (0.0, 77.5, -1e4):
         found = nearest_in_column(joint, size * np.column_stack([np.full(8, away), rows]))

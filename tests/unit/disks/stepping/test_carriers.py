@@ -39,8 +39,8 @@ def test_breaks_at_random_leave_the_sum_of_forces_of_every_side(scene, sides) ->
     body = scene(TWO_BRICKS, **sides)
     system, rng = DiskSystem(body, STEP), np.random.default_rng(11)
     across = np.zeros((3, body.count))
-    if body.seam is not None:
-        across[:, body.seam.node] = rng.uniform(-1.0, 1.0, (3, len(body.seam.node)))
+    if body.seams:
+        across[:, body.seams[0].node] = rng.uniform(-1.0, 1.0, (3, len(body.seams[0].node)))
     carriers, still = carriers_of(body), np.zeros((3, body.count))
     force = shaken(body, 1.0, 1)
     force[:, np.setdiff1d(np.arange(body.count), np.concatenate([each.nodes for each in carriers]))] = 0.0

@@ -160,9 +160,9 @@ def test_beside_a_column_the_total_motion_is_recorded_too(tmp_path) -> None:
         recorder.snapshot()
     values = simulation.state.velocity
     own = values[:, scene.beside.nodes].T
-    row = scene.positions[: scene.seam.count, 1]
+    row = scene.positions[: scene.column_count, 1]
     heights = np.unique(row)
-    means = [[values[axis, : scene.seam.count][row == height].mean() for height in heights] for axis in (0, 1)]
+    means = [[values[axis, : scene.column_count][row == height].mean() for height in heights] for axis in (0, 1)]
     up = scene.positions[scene.beside.nodes, 1]
     known = (up >= -1e-9)[:, None]  # the column reaches down to y = 0
     ground = np.column_stack([np.interp(up, heights, means[axis]) for axis in (0, 1)])

@@ -52,7 +52,12 @@ class Tied:
 
     def ties(self, twin: np.ndarray | None = None, line: np.ndarray | None = None) -> WallTies:
         every = np.arange(self.count)
-        return self.wall.ties(every[: self.particles], every[self.particles :], every if line is None else line, twin)
+        return self.wall.ties(
+            every[: self.particles],
+            every[self.particles :],
+            every if line is None else line,
+            None if twin is None else twin[self.wall.bonds.particle],
+        )
 
     def strained(self, gradient: np.ndarray) -> np.ndarray:
         """Displacements (3, n) of particles and nodes under a mean gradient (4,) xx, yy, xy, yx."""

@@ -1,0 +1,110 @@
+"""The tie that joins both sides of the slit of a continuum beside two free-field columns, see kernels/jump.py."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.damping import factors_of
+from dembound.disks.surroundings.continuum import Surroundings
+from dembound.kernels import jump  # noqa: F401  # it registers its tie
+from dembound.kernels.tables import Jump
+from dembound.motion.part import Tie
+from dembound.motion.state import Arrays, Layout
+
+
+class JumpTie(Tie):
+    """The jump across the slit of the continuum round a body, from the motion of the feet of its two columns.
+
+    Parameters
+    ----------
+    outside : the continuum. feet : those below the columns, one element wide, with the same rows. layout : the slots of
+    all nodes of the scene. time_step : Δt in s.
+    """
+
+    name = "jump"
+
+    def __init__(self, outside: Surroundings, feet: tuple[Surroundings, ...], layout: Layout, time_step: float) -> None:
+        self._outside, self._feet, self._layout, self._time_step = outside, feet, layout, time_step
+        self._last: tuple[np.ndarray, Jump] | None = None
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Nodes (k,) on both sides of the slit that move, ascending."""
+        return nodes_on_slit(self._outside)
+
+    @cached_property
+    def _at_rest(self) -> Jump:
+        """The arrays for the kernels, without lines in the support table."""
+        body, slot = self._outside.body, self._layout.slot
+        mesh, count = body.mesh, body.mesh.order + 1
+        assert mesh.box is not None
+        own, copy = mesh.doubled
+        elements = np.flatnonzero((mesh.elements[:, 0] == mesh.box[2]) & (mesh.elements[:, 1] < mesh.box[1]))
+        heights, layer = mesh.element_sizes[elements, 1], body.layer[elements]
+        lines = mesh.order * mesh.elements[elements, 1][:, None] + np.arange(count)
+        q, profile = -np.minimum(mesh.axes[1].depth[lines], 0.0), body.profile("bottom")
+        decay, gain, delay = np.zeros((3, *q.shape))
+        if profile is not None:
+            decay, gain, delay = (of(q, self._time_step) for of in (profile.decay, profile.gain, profile.delay))
+            absorbs = mesh.absorbs[elements, 1][:, None]
+            decay, gain, delay = (np.where(absorbs, each, 0.0) for each in (decay, gain, delay))
+        factors = factors_of(body.mechanisms or (None,), self._time_step)[layer if body.mechanisms else 0 * layer]
+        left, right = (foot.first + foot.body.mesh.nodes[:, :, 0] for foot in self._feet)
+        return Jump(
+            left=slot[_joined(left)],
+            right=slot[_joined(right)],
+            node=slot[self._outside.first + own],
+            copy=slot[self._outside.first + copy],
+            line=np.zeros(len(own), dtype=np.int64),
+            copy_line=np.zeros(len(own), dtype=np.int64),
+            first=int(np.count_nonzero(mesh.held[own])),
+            slope=2.0 / heights[:, None, None] * mesh.rule.derivative,
+            weight=0.5 * body.thickness * heights[:, None] * mesh.rule.weights,
+            moduli=np.stack([body.stepped_media[number].moduli for number in layer]),
+            decay=decay,
+            gain=gain,
+            delay=delay,
+            factors=factors,
+            strain_memory=np.zeros((*q.shape, 2)),
+            memory=np.zeros((*q.shape, 2, factors.shape[2])),
+            traction=np.zeros((len(own), 2)),
+            moved=np.zeros((2, count)),
+            strain=np.zeros(2),
+            stress=np.zeros(2),
+        )
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
+        if self._last is None or self._last[0] is not supported:
+            line, copy_line = (
+                np.searchsorted(supported, self._outside.first + nodes).clip(max=len(supported) - 1)
+                for nodes in self._outside.body.mesh.doubled
+            )
+            self._last = supported, self._at_rest._replace(line=line, copy_line=copy_line)
+        return self._last[1]
+
+    def saved_arrays(self) -> Arrays:
+        """The convolution variables of the absorbing layer, and the memories of damping."""
+        return {name: getattr(self._at_rest, name) for name in ("strain_memory", "memory")}
+
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        for name, values in self.saved_arrays().items():
+            values[:] = saved[name]
+
+
+def nodes_on_slit(outside: Surroundings | None) -> np.ndarray:
+    """Nodes (k,) of a scene on both sides of the slit of its continuum that move, ascending; none without a slit."""
+    if outside is None or not outside.body.mesh.slit:
+        return np.zeros(0, dtype=np.int64)
+    both = np.concatenate(outside.body.mesh.doubled)
+    moving: np.ndarray = outside.first + np.sort(both[~outside.body.mesh.held[both]])
+    return moving
+
+
+def _joined(nodes: np.ndarray) -> np.ndarray:
+    """Nodes (n,) along a line through elements, from theirs (E, N), the last of each the first of the next."""
+    return np.append(nodes[:, :-1].ravel(), nodes[-1, -1])
