@@ -23,14 +23,24 @@ from dembound.kernels.tables import Jump
 
 
 @njit(**FAST)
+def _apart(jump, n, c, values):
+    """D, or its rate, at the n-th node of the slit along c, from displacements or velocities (3, n)."""
+    apart = 0.0
+    for k in range(jump.left_share.size):
+        apart += jump.left_share[k] * values[c, U(jump.left[n, k])]
+    for k in range(jump.right_share.size):
+        apart -= jump.right_share[k] * values[c, U(jump.right[n, k])]
+    return apart
+
+
+@njit(**FAST)
 def _element_traction(jump, e, u, v):
     """Add the traction of element e of the slit at displacements u, with velocities v half a step earlier (3, n)."""
     count = jump.weight.shape[1]
     first = e * (count - 1)
     for j in range(count):
-        i, k = U(jump.left[first + j]), U(jump.right[first + j])
         for c in range(2):
-            jump.moved[c, j] = u[c, i] - u[c, k] + jump.delay[e, j] * (v[c, i] - v[c, k])
+            jump.moved[c, j] = _apart(jump, first + j, c, u) + jump.delay[e, j] * _apart(jump, first + j, c, v)
     for j in range(count):
         for c in range(2):
             slope = 0.0
@@ -55,12 +65,12 @@ def _element_traction(jump, e, u, v):
 @njit(**FAST)
 def pull_apart(jump, u, v, force):
     """Subtract from force (k, 3) of the supported nodes left of the slit the traction T."""
-    for n in range(jump.left.size):
+    for n in range(jump.node.size):
         for c in range(2):
             jump.traction[n, c] = 0.0
     for e in range(jump.weight.shape[0]):
         _element_traction(jump, e, u, v)
-    for n in range(jump.first, jump.left.size):
+    for n in range(jump.first, jump.node.size):
         for c in range(2):
             force[jump.line[n], c] -= jump.traction[n, c]
 
@@ -82,11 +92,11 @@ def _changed(s, c, i, now, inertia, u_next, v, step, moved, work):
 @njit(**FAST)
 def join_sides(jump, u_next, v, step, inertia, moved, work):
     """Join the nodes of both sides of the slit after a step, see `law.join`."""
-    for n in range(jump.first, jump.left.size):
+    for n in range(jump.first, jump.node.size):
         own, copy = jump.line[n], jump.copy_line[n]
         i, j = U(jump.node[n]), U(jump.copy[n])
         for c in range(2):
-            apart = v[c, U(jump.left[n])] - v[c, U(jump.right[n])]
+            apart = _apart(jump, n, c, v)
             heavy, light = inertia[own, c], inertia[copy, c]
             now = (heavy * v[c, i] + light * (v[c, j] - apart)) / (heavy + light)
             _changed(own, c, i, now, inertia, u_next, v, step, moved, work)

@@ -101,14 +101,13 @@ def hollowed(
 
     floors : at left and right sides, left by these holes and by any made before.
 
-    Raises CaseError for holes that reach a side beyond which the ground goes on, except for floors beside a continuum.
+    Raises CaseError for holes that reach a side beyond which the ground goes on, except for floors.
     """
     removed = np.logical_or.reduce([hole.takes(body.positions, case.packing.span) for hole in holes])
     left, kept = body.without(removed)
     beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
-    below = {"free field": {}, "continuum": floors}
     problems = [
-        line for what in beyond for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], below[what])
+        line for what in beyond for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], floors)
     ]
     if problems:
         raise CaseError(problems)

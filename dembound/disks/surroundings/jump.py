@@ -20,7 +20,7 @@ class JumpTie(Tie):
 
     Parameters
     ----------
-    outside : the continuum. feet : those below the columns, one element wide, with the same rows. layout : the slots of
+    outside : the continuum. feet : those below the columns, with the same rows. layout : the slots of
     all nodes of the scene. time_step : Δt in s.
     """
 
@@ -52,10 +52,12 @@ class JumpTie(Tie):
             absorbs = mesh.absorbs[elements, 1][:, None]
             decay, gain, delay = (np.where(absorbs, each, 0.0) for each in (decay, gain, delay))
         factors = factors_of(body.mechanisms or (None,), self._time_step)[layer if body.mechanisms else 0 * layer]
-        left, right = (foot.first + foot.body.mesh.nodes[:, :, 0] for foot in self._feet)
+        (left, left_share), (right, right_share) = map(_across, self._feet)
         return Jump(
-            left=slot[_joined(left)],
-            right=slot[_joined(right)],
+            left=slot[left],
+            right=slot[right],
+            left_share=left_share,
+            right_share=right_share,
             node=slot[self._outside.first + own],
             copy=slot[self._outside.first + copy],
             line=np.zeros(len(own), dtype=np.int64),
@@ -105,6 +107,12 @@ def nodes_on_slit(outside: Surroundings | None) -> np.ndarray:
     return moving
 
 
-def _joined(nodes: np.ndarray) -> np.ndarray:
-    """Nodes (n,) along a line through elements, from theirs (E, N), the last of each the first of the next."""
-    return np.append(nodes[:, :-1].ravel(), nodes[-1, -1])
+def _across(foot: Surroundings) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n, a) of a scene on the lines across a foot, from the bottom, and weights (a,) of the mean of a line."""
+    mesh = foot.body.mesh
+    assert mesh.box is not None
+    lines, along = mesh.order * mesh.box[1] + 1, mesh.axes[0].lines
+    share = np.zeros(along)
+    places = mesh.order * np.arange(mesh.cells[0])[:, None] + np.arange(mesh.order + 1)
+    np.add.at(share, places % along, 0.5 * mesh.axes[0].sizes[:, None] * mesh.rule.weights)
+    return foot.first + np.arange(lines * along).reshape(lines, along), share / mesh.axes[0].length

@@ -14,7 +14,7 @@ from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.layer import LONG_WAVES
 from dembound.continuum.medium import Ground, Layered, Medium
-from dembound.continuum.mesh import WHOLE, Around, Mesh
+from dembound.continuum.mesh import WHOLE, Around, Mesh, divided
 from dembound.disks.material.free_surface import inset
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
@@ -68,7 +68,7 @@ class ElementSizes(NamedTuple):
         if narrow.any():
             settings = settings._replace(absorption=replace(settings.absorption, shift=LONG_WAVES))
             if not case.outside.element:  # lower ones would only shorten the step
-                settings = settings._replace(element=max(0.5 * largest, min(largest, 2.0 * least)))
+                settings = settings._replace(element=_below_column(largest, least))
         box = np.where(narrow, np.maximum(extent, least), extent)
         each = settings.sides(*box.tolist()) if not any(periodic) else [settings.side(side) for side in box.tolist()]
         width, height = (side if one else own for side, own, one in zip(box.tolist(), each, narrow, strict=True))
@@ -190,7 +190,8 @@ class Outline(NamedTuple):
     ) -> Outline:
         """The outline of a body that is periodic along some axes, with floors at its left and right side.
 
-        slit : see `Mesh`.
+        slit : whether the mesh has one, see `Mesh`; rows below the body are then up to half as high, as those below a
+        column, which have the same heights.
 
         Raises CaseError for settings with which there is no mesh.
         """
@@ -209,23 +210,25 @@ class Outline(NamedTuple):
             mirrors=mirrors,
             ground=medium_of(ground),
         )
-        return cls(tuple(sides), size, rim, replace(mesh, slit=True) if slit else mesh)
+        if slit:
+            height = _below_column(size.settings.element, least_element(case, ground.brick.mean_diameter))
+            mesh = replace(_lower_below(mesh, height), slit=True)
+        return cls(tuple(sides), size, rim, mesh)
 
     @classmethod
     def below(cls, case: DiskCase, ground: PackedMaterial, column: Assembly, beside: Outline) -> Outline:
-        """The outline below a free-field column, one element wide, with rows as those below a body beside it."""
-        extent, mesh = mass_extent(ground, column), beside.mesh
+        """The outline below a free-field column, with rows and layers as those below a body beside it."""
+        mesh, size = beside.mesh, ElementSizes.of(case, ground, column, ("bottom",), (True, False))
         assert mesh.box is not None
-        width = max(float(extent[0]), least_element(case, ground.brick.mean_diameter))
-        box = np.array([width, extent[1]])
-        size = ElementSizes(beside.size.settings, box, (width, beside.size.element[1]), (True, False))
+        size = size._replace(settings=beside.size.settings)
         rim, rows = Rim.of(case, ground, column, ("bottom",), size, NO_FLOORS), mesh.box[1]
+        widths = divided(float(size.box[0]), size.element[0])
         own = Mesh(
             order=mesh.order,
-            widths=(width,),
+            widths=widths,
             heights=(*mesh.heights[:rows], rim.box[3] - rim.box[1]),
             origin=(rim.box[0], mesh.origin[1]),
-            box=(0, rows, 1, rows + 1),
+            box=(0, rows, len(widths), rows + 1),
             layer=Around(bottom=mesh.layer.bottom),
             periodic=(True, False),
         )
@@ -239,6 +242,33 @@ def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndar
     for side, value in at_levels.items():
         values[x <= left if side == "left" else x >= right] = value
     return values
+
+
+def _below_column(largest: float, least: float) -> float:
+    """Height (m) of elements below a column: half the largest one, or more if they were lower than useful twice."""
+    return max(0.5 * largest, min(largest, 2.0 * least))
+
+
+def _lower_below(mesh: Mesh, height: float) -> Mesh:
+    """A mesh with equal rows up to a height (m) below its box, and an absorbing layer as thick there.
+
+    Unchanged where its rows have several heights, as in ground with layers there.
+    """
+    assert mesh.box is not None
+    left, rows, right, top = mesh.box
+    each, margin = mesh.heights[0], rows - mesh.layer.bottom
+    if each <= height or np.ptp(mesh.heights[:rows]) > WHOLE * each:
+        return mesh
+    layer = divided(mesh.layer.bottom * each, height)
+    more = len(layer) - mesh.layer.bottom
+    return replace(
+        mesh,
+        heights=(*layer, *(height,) * margin, *mesh.heights[rows:]),
+        origin=(mesh.origin[0], mesh.origin[1] + margin * (each - height)),
+        box=(left, rows + more, right, top + more),
+        levels=None if mesh.levels is None else (mesh.levels[0] + more, mesh.levels[1] + more),
+        layer=mesh.layer._replace(bottom=len(layer)),
+    )
 
 
 def _gap_above(case: DiskCase, body: Assembly) -> float:

@@ -195,8 +195,9 @@ class DampedGrid(NamedTuple):
 class Jump(NamedTuple):
     """The jump D = u_L − u_R across the slit of a grid, along E elements of N points; see kernels/jump.py.
 
-    Of the nodes on the slit from the bottom up, n = E(N − 1) + 1: left, right : (n,) slots of nodes that move by u_L
-    and u_R less the incident motion. node, copy : (n,) slots of the nodes left and right of the slit; line, copy_line :
+    Of the nodes on the slit from the bottom up, n = E(N − 1) + 1: left, right : (n, a), (n, b) slots of nodes at
+    these heights whose means, with weights left_share (a,) and right_share (b,), move by u_L and u_R less the incident
+    motion. node, copy : (n,) slots of the nodes left and right of the slit; line, copy_line :
     (n,) theirs in the support table. first : of the nodes that move.
     slope : (E, N, N) 1/m, d/dy at points. weight : (E, N) m², of the quadrature along y times the thickness. moduli :
     (E, 6) as of `Shape`. decay, gain, delay : (E, N), B, A and τ (s) along y as of `Absorber`. factors : (E, 2, K) e
@@ -206,6 +207,8 @@ class Jump(NamedTuple):
 
     left: np.ndarray
     right: np.ndarray
+    left_share: np.ndarray
+    right_share: np.ndarray
     node: np.ndarray
     copy: np.ndarray
     line: np.ndarray
