@@ -160,7 +160,7 @@ def must_fit_here(case: DiskCase) -> None:
 def expected_bytes(case: DiskCase) -> float:
     """Largest RAM (bytes) of a run of a case, computed without building it."""
     expected = SceneSizes.expected(case)
-    excavated = any(hole.stage == "after" for hole in case.hole)
+    excavated = any(hole.stage == "after" for hole in case.holes)
     return run_bytes(case, [expected], expected if excavated else None)
 
 

@@ -57,13 +57,13 @@ def monitors_of(
     first = columns_end(seams)
     of_body = first + nearest(assembly.positions[first:], np.array([m.position for m in case.monitor]))
     nodes = {m.name: int(node) for m, node in zip(case.monitor, of_body, strict=True)}
-    twins = {}
+    twins: dict[str, int] = {}
     for name, node in nodes.items() if seams else ():
-        beyond = int(len(seams) > 1 and assembly.positions[node, 0] > case.middle)
-        twins[name] = int(seams[beyond].twin[node])
+        number = int(len(seams) > 1 and assembly.positions[node, 0] > case.middle)
+        twins[name] = int(seams[number].twin[node])
         if twins[name] == node:  # above the ground at that side
-            place = np.array([[assembly.positions[node, 0], seams[beyond].top]])
-            twins[name] = int(nearest_in_column(assembly, place, beyond)[0])
+            surface = np.array([[assembly.positions[node, 0], seams[number].top]])
+            twins[name] = int(nearest_in_column(assembly, surface, number)[0])
     between: dict[str, Between] = {}
     disks = {name: (assembly.positions[node], int(assembly.brick_particle[node])) for name, node in nodes.items()}
     if outside is not None:

@@ -159,11 +159,11 @@ def build(case: DiskCase) -> DiskScene:
     must_fit_here(case)
     ground = ground_of(case)
     body = tile(ground.brick, case.packing.copies, case.periodic, case.packing.origin)
-    shapes = [hole for hole in case.hole if hole.is_shape]
+    shapes = [hole for hole in case.holes if hole.is_shape]
     for shape in shapes:
         body, _ = body.without(shape.takes(body.positions, case.packing.span))
     edges = find_edges(body, case.periodic, () if shapes else case.packing.regular_sides)
-    holes = [hole for hole in case.hole if not hole.is_shape]
+    holes = [hole for hole in case.holes if not hole.is_shape]
     first, later = (tuple(hole for hole in holes if hole.stage == stage) for stage in ("before", "after"))
     if first:
         body, edges, _ = hollowed(case, ground.brick, body, edges, first, case.floors_of(first))
@@ -196,8 +196,11 @@ def _scene(
     if beyond:
         outline = Outline.of(case, around, body, beyond, case.periodic, floors, slit=len(standing) > 1)
     if standing:
-        beside = case.box[0] if outline is None else outline.mesh.origin[0]
-        assembly, seams = with_columns(ground.brick, body, standing, case.column_rows, (beside, case.box[1]))
+        left, bottom, right, _ = case.box
+        if outline is not None:
+            left = outline.mesh.origin[0]
+            right = left + float(outline.mesh.size[0])
+        assembly, seams = with_columns(ground.brick, body, standing, case.column_rows, (left, bottom, right))
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count = len(assembly.radii)
@@ -293,7 +296,9 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
+    alone = replace(
+        case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=(), ground=case.ground.level()
+    )
     standing = Standing((), scene.seams[number].top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))

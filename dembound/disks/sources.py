@@ -77,7 +77,7 @@ def _holes(case: DiskCase, driven: list[Source], fastest: float, slowest: float)
     """Holes, for the waves of driven sides; other waves reach a column over its side anyway."""
     if not driven:
         return
-    for hole in (each for each in case.hole if not each.is_shape):
+    for hole in (each for each in case.holes if not each.is_shape):
         x0, y0, x1, y1 = hole.box
         corners = np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]])
         first = min(source.start + float(source.distance(corners).min()) / fastest for source in driven)

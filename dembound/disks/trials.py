@@ -103,5 +103,7 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     stiffest = {side: table.stiffest(side, case.packing.box) for side, table in case.boundary.items()}
     if stiffest != case.boundary:
         words.append("springs that depend on the distance of a source are those nearest to it")
-    words += ["no holes, whose free walls do not lower the limit"] * bool(case.hole)
-    return replace(case, boundary=stiffest, packing=case.packing.with_copies(*fewer), hole=()), words
+    words += ["no holes, whose free walls do not lower the limit"] * bool(case.holes)
+    return replace(
+        case, boundary=stiffest, packing=case.packing.with_copies(*fewer), hole=(), ground=case.ground.level()
+    ), words

@@ -99,7 +99,7 @@ def with_columns(
     body: Assembly,
     standing: Sequence[Standing],
     rows: tuple[int, int] | None = None,
-    beside: tuple[float, float] | None = None,
+    beside: tuple[float, float, float] | None = None,
 ) -> tuple[Assembly, tuple[Seam, ...]]:
     """A body and its free-field columns in one assembly, the columns first, and the seams between them and the body.
 
@@ -107,14 +107,15 @@ def with_columns(
 
     standing : the columns; the first stands left of the body, another one right of it.
     rows : first row of bricks of the body in the columns, and the number of rows of a column; None: it is as high as
-    the body. beside : lower left corner (m) of the region that the first stands beside, by default of the body.
+    the body. beside : left, bottom and right end (m) of the region they stand beside, by default of the body.
 
     Raises PackingError when a disk has no twin.
     """
     first, height = (0, body.copies[1]) if rows is None else rows
     width, gap = float(brick.size[0]), APART * brick.mean_diameter
-    left, bottom = body.origin.tolist() if beside is None else beside
-    places = left - width - gap, float(body.origin[0] + body.extent[0]) + gap
+    own = *body.origin.tolist(), float(body.origin[0] + body.extent[0])
+    left, bottom, right = own if beside is None else beside
+    places = left - width - gap, right + gap
     built = [each.tiled(brick, height, (0.0, 0.0), bottom) for each in standing]
     count = sum(len(each.radii) for each in built)
     columns, seams, begin = [], [], 0

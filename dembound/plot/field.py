@@ -71,9 +71,9 @@ class Disks:
 
     @property
     def part_windows(self) -> list[Window]:
-        """Windows of the disks of a free-field column, if there is one, and of the body."""
-        parts = [slice(0, self.column), slice(self.column, None)]
-        return [Window.around(self.positions[part], self.radii[part]) for part in parts if len(self.radii[part])]
+        """Windows of the disks of free-field columns, if there are any, and of the body."""
+        parts = [*self._columns, np.arange(self.column, len(self.radii))]
+        return [Window.around(self.positions[part], self.radii[part]) for part in parts if len(part)]
 
     @cached_property
     def window(self) -> Window:
@@ -86,15 +86,25 @@ class Disks:
         return f"{len(self.radii):,} disks{'' if self.continuum is None else ' and a continuum'}"
 
     @property
-    def seam(self) -> float | None:
-        """Position (m, along x) between the free-field column and the body or its continuum; None without a column."""
+    def _columns(self) -> list[np.ndarray]:
+        """Disks (k,) of the free-field columns left and right of the body, those that there are."""
         if self.column == 0:
-            return None
-        right, left = (self.positions + sign * self.radii[:, None] for sign in (1.0, -1.0))
-        begins = left[self.column :, 0].min()
+            return []
+        right = self.positions[: self.column, 0] > self.positions[self.column :, 0].max()
+        return [each for each in (np.flatnonzero(~right), np.flatnonzero(right)) if len(each)]
+
+    @property
+    def seams(self) -> list[float]:
+        """Positions (m, along x) between free-field columns and the body or its continuum."""
+        low, high = (self.positions[:, 0] + sign * self.radii for sign in (-1.0, 1.0))
+        begins, ends = float(low[self.column :].min()), float(high[self.column :].max())
         if self.continuum is not None:
-            begins = min(begins, self.continuum.window.extent[0])
-        return 0.5 * float(right[: self.column, 0].max() + begins)
+            left, right = self.continuum.window.extent[:2]
+            begins, ends = min(begins, left), max(ends, right)
+        return [
+            0.5 * float(high[each].max() + begins) if low[each].min() < begins else 0.5 * float(low[each].min() + ends)
+            for each in self._columns
+        ]
 
 
 @dataclass(frozen=True)

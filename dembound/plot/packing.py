@@ -221,8 +221,9 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
         shown = window.touches(chains.positions, disks.radii)
         draw_disks(panel, chains.positions[shown], disks.radii[shown], facecolors=SHADE, linewidths=0.0)
     drawn = _draw_lines(panel, window, chains, max(LEAST_WIDTH, 72.0 * scale * WIDEST * 2.0 * disks.radii.mean()))
-    if disks.seam is not None and window.extent[0] < disks.seam < window.extent[1]:
-        panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
+    for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
+        if window.extent[0] < seam < window.extent[1]:
+            panel.axvline(seam, color="black", linewidth=1.0, label=label)
     return finished(figure, f"{disks.case}: normal forces of {drawn}, t = {chains.time:.3g} s", [panel], 3)
 
 

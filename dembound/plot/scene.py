@@ -190,8 +190,9 @@ def draw_panel(
         beyond = None if shown.beyond is None else shown.beyond[index]
         continuum = disks.continuum.moved(None if shown.moved_beyond is None else shown.moved_beyond[index])
         draw_continuum(panel, continuum, disks.part_windows, beyond, shown.limits, scale)
-    if disks.seam is not None and disks.seam > window.corner[0]:
-        panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
+    for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
+        if window.extent[0] < seam < window.extent[1]:
+            panel.axvline(seam, color="black", linewidth=1.0, label=label)
     _mark_layers(panel, disks, window, scale / panel.figure.dpi)
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):

@@ -95,12 +95,14 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     material = case.material.model_copy(update={"law": linear_law(case.material.law)})
     left_out = {
         **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
-        "no holes": bool(case.hole),
+        "no holes": bool(case.holes),
         "no static stage": given.static is not None,
         "no loads": bool(case.load),
         f"the {material.law} law": given.material.law != material.law,
     }
-    plain = replace(case, boundary=boundary, material=material, static=None, hole=(), load=())
+    plain = replace(
+        case, boundary=boundary, material=material, static=None, hole=(), load=(), ground=case.ground.level()
+    )
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 
 

@@ -236,16 +236,24 @@ def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
     ValueError
         If it does not contain a history; the message starts with ``path:``.
     """
-    lines, separator = _numbers(text, path.suffix.lower() == ".csv")
-    try:
-        plain = [line for _, line in lines]
-        samples = np.loadtxt(plain, ndmin=2, delimiter=separator) if plain else np.empty((0, 2))
-    except ValueError:  # which quotes the file: it may be any file
-        raise ValueError(f'path: "{path}" {NO_COLUMNS}: {_misfit(lines, separator)}; {OF_A_RECORD}') from None
+    samples = columns_in(text, path, f"; {OF_A_RECORD}")
     problem = _problem(samples, quantity)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')
     return samples
+
+
+def columns_in(text: str, path: Path, advice: str = "") -> np.ndarray:
+    """The columns (k, c) of numbers of the text of a file, see `samples_of`; advice : at the end of messages.
+
+    Raises ValueError for a text without columns of numbers; the message starts with ``path:``.
+    """
+    lines, separator = _numbers(text, path.suffix.lower() == ".csv")
+    try:
+        plain = [line for _, line in lines]
+        return np.loadtxt(plain, ndmin=2, delimiter=separator) if plain else np.empty((0, 2))
+    except ValueError:  # which quotes the file: it may be any file
+        raise ValueError(f'path: "{path}" {NO_COLUMNS}: {_misfit(lines, separator)}{advice}') from None
 
 
 def _numbers(text: str, is_csv: bool) -> tuple[list[tuple[int, str]], str | None]:

@@ -95,7 +95,7 @@ def may_be_boxed(case: DiskCase) -> bool:
 def _ends_level(case: DiskCase) -> bool:
     """Whether holes end within the sides, or as level floors at them, with no body-wide loads."""
     left, _, right, _ = case.packing.box
-    reached = {side for hole in case.hole for side in ("left", "right") if _reaches(hole.box, side, left, right)}
+    reached = {side for hole in case.holes for side in ("left", "right") if _reaches(hole.box, side, left, right)}
     if not reached:
         return True
     wide = FLOOR * 2.0 * case.packing.radius

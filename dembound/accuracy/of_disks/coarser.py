@@ -50,7 +50,7 @@ TRIED = 60
 
 def largest_diameter(case: DiskCase, shortest: float) -> float:
     """Largest diameter (m) of disks: at most `shortest`, `CELLS` across holes and between sides, `LAYER` a layer."""
-    holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
+    holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.holes]
     across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
     layers = [(high - low) / LAYER for high, low in pairwise([case.box[3], *case.joints])]
     return min([shortest, *holes, *across, *layers])
@@ -92,7 +92,7 @@ def coarser(
         ground=Ground(),
         material=case.material if case.layer else _material(case.material, scene.ground),
         layer=_layers(case, scene.ground, sides),
-        hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.hole),
+        hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.holes),
         load=tuple(_load(load, scene, cell, sides) for load in case.load),
         monitor=tuple(
             monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor

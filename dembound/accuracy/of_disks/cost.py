@@ -299,7 +299,7 @@ class Counted:
 def _hollow(case: DiskCase) -> float:
     """Area (m²) of the holes within the disks' box."""
     area, low, high = 0.0, np.array(case.packing.box[:2]), np.array(case.packing.box[2:])
-    for number, hole in enumerate(case.hole):
+    for number, hole in enumerate(case.holes):
         start, end = np.maximum(hole.box[:2], low), np.minimum(hole.box[2:], high)
         if hole.is_shape:
             start, end = low, high
@@ -308,7 +308,7 @@ def _hollow(case: DiskCase) -> float:
         along = (np.arange(SAMPLES) + 0.5) / SAMPLES
         grid = np.stack(np.meshgrid(*(start[:, None] + np.outer(end - start, along))), axis=-1).reshape(-1, 2)
         inside = hole.takes(grid, case.packing.span)
-        for other in case.hole[:number]:
+        for other in case.holes[:number]:
             inside &= ~other.takes(grid, case.packing.span)
         area += float(np.prod(end - start)) * float(inside.mean())
     return area

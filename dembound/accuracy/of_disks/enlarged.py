@@ -86,7 +86,8 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
         layer=case.layers_meeting(case.joints),
         load=tuple(_at_own_disk(load, scene, packing) for load in case.load),
         monitor=tuple(_at_own_disk(monitor, scene, packing) for monitor in case.monitor),
-        hole=(*case.hole, *_floors_beyond(case, packing.box)),
+        hole=(*case.holes, *_floors_beyond(case, packing.box)),
+        ground=case.ground.level(),
         run=_run_of(scene),
         name=f"{case.name}_extended",
     )
@@ -114,7 +115,7 @@ def _at_own_disk(table: T, scene: DiskScene, larger: Packing) -> T:
     own = scene.positions[forces_of(table, scene)[0]][0] if isinstance(table, Load) else scene.monitored[table.name]
     tiles, places = disks_around(brick, low, table.position)
     places = places[((tiles >= 0) & (tiles < larger.copies)).all(axis=1)].reshape(-1, 2)
-    gone = [hole.takes(places, larger.span) for hole in scene.case.hole]
+    gone = [hole.takes(places, larger.span) for hole in scene.case.holes]
     there = np.vstack([own, places[~np.any(gone, axis=0)] if gone else places])
     taken = there[nearest(there, np.array([table.position]))[0]]
     if np.abs(taken - own).max() < EQUAL * brick.mean_diameter:
@@ -159,7 +160,7 @@ def _floors_beyond(case: DiskCase, larger: Box) -> list[Hole]:
     """The holes that go on as level floors from the sides of a case up to those of a larger box, m."""
     own = case.packing.box
     ends = {"left": (larger[0], own[0]), "right": (own[2], larger[2])}
-    first = case.floors_of([hole for hole in case.hole if hole.stage == "before"])
+    first = case.floors_of([hole for hole in case.holes if hole.stage == "before"])
     each = [("before", side, floor) for side, floor in first.items()]
     each += [("after", side, floor) for side, floor in case.floors.items() if first.get(side) != floor]
     return [
@@ -181,7 +182,7 @@ def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
     problems = [
         f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
         "scene cannot be extended there"
-        for hole in case.hole
+        for hole in case.holes
         for side in SIDES
         if bricks.get(side, 0)
         and _reaches(hole.box, side, plane_of(side, case.packing.box))

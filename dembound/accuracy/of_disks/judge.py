@@ -221,7 +221,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def hides_sides(self, case: DiskCase) -> bool:
         """Whether the case has holes, whose walls consist of disks."""
-        return bool(case.hole)
+        return bool(case.holes)
 
     def has_input_continuum(self, case: DiskCase) -> bool:
         """Whether waves enter through a continuum round disks that fill the scene."""

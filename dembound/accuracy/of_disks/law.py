@@ -125,7 +125,7 @@ def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     if not LAWS[case.material.law].has_history or not case.material.begins_elastic:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
-    return is_square_lattice(scene.ground) and not (case.static is not None and (case.hole or pushed))
+    return is_square_lattice(scene.ground) and not (case.static is not None and (case.holes or pushed))
 
 
 def _as_the_weakest(case: DiskCase, scene: DiskScene) -> dict[str, Any]:

@@ -4,19 +4,29 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from pydantic import PrivateAttr, ValidationInfo, model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, is_far, plane_of
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.surface import air_above, points_in_file, require_surface
 from dembound.casefile.messages import choices, corners, numbered, show
 from dembound.holes.hole import Floor, Hole, floor_beside
+from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Extent, Packing
 from dembound.table import Box, Table, quantity
 
 
 class Ground(Table):
-    """The ground, of which the disks fill a box; outside it is a continuum up to its free surface at the top."""
+    """The ground, of which the disks fill a box; outside it is a continuum up to its free surface at the top.
+
+    With a `surface` the disks fill the box up to that only; beyond the box it goes on at its heights there.
+
+    Notes
+    -----
+    Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
+    """
 
     size: Extent | None = quantity(
         None,
@@ -25,6 +35,45 @@ class Ground(Table):
         help="width and height, whole bricks high; absent: the disks fill all of the ground",
     )
     origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
+    surface: Points | str | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        help="free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the "
+        "folder of the case; level over four diameters at the sides of the disks; absent: the top of the disks",
+    )
+
+    _points: Points = PrivateAttr(default=())
+    _text: str = PrivateAttr(default="")
+
+    @model_validator(mode="after")
+    def _from_left_to_right(self, info: ValidationInfo) -> "Ground":
+        if self.surface is None:
+            return self
+        if isinstance(self.surface, str):
+            self._points, self._text = points_in_file(self.surface, info.context or {})
+        else:
+            self._points = self.surface
+        require_surface(self._points)
+        return self
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Text of the file of the surface, by its path, if it has one."""
+        return {self.surface: self._text} if isinstance(self.surface, str) else {}
+
+    def level(self) -> "Ground":
+        """The ground without its surface."""
+        return Ground(**self.model_dump(exclude={"surface"}, exclude_unset=True))
+
+    @property
+    def points(self) -> Points:
+        """The points of the surface; none without one."""
+        return self._points
+
+    def above(self, box: Box) -> Polygon | None:
+        """What is above the surface, as a hole in a box of disks (left, bottom, right, top; m); None without one."""
+        return air_above(self._points, box) if self._points else None
 
     def box(self, packing: Packing) -> Box:
         """Left, bottom, right and top (m) of the ground; without a size, of the disks, which then fill it."""
@@ -99,8 +148,11 @@ def lowered(found: Mapping[str, Floor], boundary: Mapping[str, Any]) -> dict[str
 def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
     """Lowered floors from the tables of a case; tables and entries that are invalid on their own are None."""
     packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
-    holes = [hole for hole in tables["hole"] if hole]
-    return lowered(floors(holes, packing, ground, boundary), boundary) if packing and ground else {}
+    if not (packing and ground):
+        return {}
+    above = ground.above(packing.box)
+    holes = [hole for hole in (*tables["hole"], above) if hole]
+    return lowered(floors(holes, packing, ground, boundary), boundary)
 
 
 def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
@@ -139,6 +191,9 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables)
+    if tables["packing"] and tables["ground"] and (above := tables["ground"].above(tables["packing"].box)):
+        for key in ("load", "monitor"):
+            yield from _places_in_it("the air above ground.surface", above, key, tables)
     for place, load in numbered("load", tables["load"]):
         if load.hole is not None:
             yield from _no_wall(place, load, tables)

@@ -1,6 +1,6 @@
 """A case of bonded disks: all tables of one file."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -12,6 +12,7 @@ from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
+from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
 from dembound.holes.hole import Floor, Hole, level_beside
@@ -120,6 +121,23 @@ class DiskCase(Case):
         """Whether the disks reach the top of the ground."""
         return "top" not in self.packing.gaps(self.box)
 
+    @cached_property
+    def holes(self) -> tuple[Hole, ...]:
+        """The holes, and the air above the surface of the ground as the last one if that is given."""
+        above = self.ground.above(self.packing.box)
+        return self.hole if above is None else (*self.hole, above)
+
+    @property
+    def named_holes(self) -> Iterator[tuple[str, Hole]]:
+        """The holes with their places in messages."""
+        yield from numbered("hole", self.hole)
+        yield from (("ground.surface", hole) for hole in self.holes[len(self.hole) :])
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Texts of the files that the case refers to, by their paths in it."""
+        return super().files | self.ground.files
+
     def hole_of(self, load: Load) -> Hole:
         """The hole on whose wall a pressure acts."""
         return next(hole for hole in self.hole if hole.name == load.hole)
@@ -132,7 +150,7 @@ class DiskCase(Case):
     @cached_property
     def floors(self) -> dict[str, Floor]:
         """The floors that all holes together leave at the left and right side, by side."""
-        return self.floors_of(self.hole)
+        return self.floors_of(self.holes)
 
     def floors_of(self, holes: Sequence[Hole]) -> dict[str, Floor]:
         """The floors that some of the holes leave."""
@@ -197,7 +215,7 @@ class DiskCase(Case):
         """
         box, diameter = self.packing.box, 2.0 * self.packing.radius
         level = {
-            side: self.floors[side].width if side in self.floors else level_beside(self.hole, box, side, diameter)
+            side: self.floors[side].width if side in self.floors else level_beside(self.holes, box, side, diameter)
             for side in ("left", "right")
         }
         return 0.5 * (box[0] + level["left"] + box[2] - level["right"])

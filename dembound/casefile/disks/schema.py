@@ -23,6 +23,7 @@ from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
 from dembound.casefile.disks.static import Static, static_problems
+from dembound.casefile.disks.surface import surface_problems
 from dembound.casefile.disks.targets import law_problems, with_history
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
@@ -69,6 +70,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from layer_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
+        if ground.points:
+            yield from surface_problems(ground.points, packing)
         yield from ground_problems(ground, packing, tables["boundary"])
         for key in ("load", "monitor"):
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])

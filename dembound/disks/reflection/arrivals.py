@@ -126,7 +126,7 @@ def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
         for load in case.load
         if not load.is_everywhere
     }
-    boxes |= {f"hole {number}": (hole.box, None) for number, hole in enumerate(case.hole, start=1)}
+    boxes |= {f"hole {number}": (hole.box, None) for number, hole in enumerate(case.holes, start=1)}
     for name, (box, signal) in boxes.items():
         axis = normal_axis(side)
         centre = np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])

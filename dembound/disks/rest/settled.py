@@ -142,7 +142,7 @@ class Uniformity:
         packing = blocks.stress(packing_pieces(scene, asked), scene.positions)
         own, beyond = (np.abs(each - packing).max(axis=-1) * scale for each in (asked, stress))
         near = np.zeros(off.shape, dtype=np.bool_)
-        for hole in scene.case.hole:
+        for hole in scene.case.holes:
             if hole.stage == "before" or scene.before is not None:
                 near |= blocks.near(hole.box)
         away = np.where(near, -1.0, off)

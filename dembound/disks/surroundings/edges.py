@@ -8,7 +8,6 @@ import numpy as np
 
 from dembound.boundaries.edge import SIDES, Edge, exposed, normal_axis, outer_row
 from dembound.casefile.disks.model import DiskCase
-from dembound.casefile.messages import numbered
 from dembound.errors import CaseError
 from dembound.holes.hole import Floor, Hole
 from dembound.packings.brick import Brick
@@ -42,10 +41,15 @@ def require_held(case: DiskCase, edges: Mapping[str, Edge]) -> None:
                 raise CaseError([f"{place}.{side}.within: no disk of this side is centred in it; make it wider"])
 
 
-def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
-    """A side with the kept particles (m,) bool only; their shares of its length do not change."""
+def edge_without(edge: Edge, kept: np.ndarray, *, may_end: bool = False) -> Edge | None:
+    """A side with the kept particles (m,) only; their shares of its length do not change.
+
+    None if it has none left and may end, as nothing acts on it; else raises CaseError.
+    """
     still = np.isin(edge.nodes, kept)
     if not still.any():
+        if may_end:
+            return None
         raise CaseError(
             [
                 f"hole: holes remove all {len(edge.nodes)} particles that make up the {edge.side} side, so boundary."
@@ -111,7 +115,11 @@ def hollowed(
     ]
     if problems:
         raise CaseError(problems)
-    return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
+    acting = {side for load in case.load for side in load.sides or ()} | {*case.boundary}
+    if case.static is not None:
+        acting |= {*case.static.boundary} | ({*SIDES} if case.static.stress is not None else set())
+    found = {side: edge_without(edge, kept, may_end=side not in acting) for side, edge in edges.items()}
+    return left, {side: edge for side, edge in found.items() if edge is not None}, kept
 
 
 def _at_sides(
@@ -146,7 +154,7 @@ def _at_sides(
             wrong |= lost & (up < floor.height - diameter)
     lost = cut.only(wrong)
     problems, inside = [], np.zeros(len(lost.node), dtype=np.bool_)
-    for place, hole in numbered("hole", case.hole):
+    for place, hole in case.named_holes:
         if hole in holes:
             taken = hole.takes(body.positions[lost.node], case.packing.span)
             problems += _mistakes(f"{place}: reaches", lost.side[taken], beyond, uneven, diameter)

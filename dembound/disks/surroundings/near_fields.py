@@ -86,8 +86,8 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 def sources_near(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray, Literal["force", "pressure", "waves"]]]:
     """The `extents`, each with the kind of source of its static field."""
     left, _, right, _ = case.packing.box
-    pressed = case.pressed if signals_of(case) else {hole.name for hole in case.hole}
-    for hole in case.hole:
+    pressed = case.pressed if signals_of(case) else {hole.name for hole in case.holes}
+    for hole in case.holes:
         low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
         for side, floor in case.floors.items():
             if side == "left" and low[0] <= left + floor.width:

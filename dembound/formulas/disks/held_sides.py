@@ -94,7 +94,7 @@ class HeldSides:
         case = self.scene.case
         if self.scene.ground.is_layered:
             return False
-        if not case.driving or case.incident is not None or case.hole or any(load.wave for load in case.load):
+        if not case.driving or case.incident is not None or case.holes or any(load.wave for load in case.load):
             return False
         axis, held = normal_axis(side), {*self._prescribed(side)}
         return all(
@@ -190,7 +190,7 @@ class DrivenSides:
         for side, table in self.scene.case.boundary.items():
             if not table.is_interface:
                 continue
-            if self.scene.case.hole or self.scene.case.load or table.dashpots_alone() != table:
+            if self.scene.case.holes or self.scene.case.load or table.dashpots_alone() != table:
                 reason = "dashpots stand for rock at normal incidence alone; at other angles it is not predicted"
                 yield Cause.unknown(f"{side} side", reason)
             back = {motion: self.held.reflects(OPPOSITE[side], motion) for motion in table.factors}

@@ -73,7 +73,7 @@ times in random packings (203, at most 2.0; benchmarks/walls.py). Single directi
 def causes_of_walls(scene: DiskScene, names: Iterable[str]) -> Iterator[Cause]:
     """Errors by walls of holes at monitors of these names."""
     case, ground = scene.case, scene.ground
-    if not case.hole:
+    if not case.holes:
         return
     diameter, places = ground.brick.mean_diameter, scene.monitored
     parts = {name: wall_errors(case, ground, diameter, places[name]) for name in names}
@@ -89,7 +89,7 @@ def wall_errors(
     ground : medium of the waves, with disks of any diameter. place : (2,) m; without one the mean of all directions at
     a wall. 0 without holes.
     """
-    if not case.hole:
+    if not case.holes:
         return dict.fromkeys(MOTIONS, 0.0)
     signals, found = signals_of(case), {}
     omega = {
@@ -98,7 +98,7 @@ def wall_errors(
     }
     for quantity in MOTIONS:
         errors = []
-        for hole in case.hole:
+        for hole in case.holes:
             speed = slowest_speed(ground, hole.box[1], hole.box[3])
             numbers = omega[quantity] / speed, omega["velocity"] / speed
             share = 1.0 if hole.name in case.pressed else _scattered(case, ground, hole, numbers, place)

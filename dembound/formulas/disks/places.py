@@ -50,7 +50,7 @@ def _on_rims(case: DiskCase, disks: np.ndarray, within: float) -> np.ndarray:
     """Mask (k,) of disks at (k, 2) m that are at most a distance (m) from a hole."""
     beside = (disks[:, None] + within * NINE).reshape(-1, 2)
     found = np.zeros(len(disks), dtype=bool)
-    for hole in case.hole:
+    for hole in case.holes:
         found |= hole.takes(beside, case.packing.span).reshape(-1, len(NINE)).any(axis=1)
     return found
 
@@ -100,7 +100,7 @@ def places_of_loads(scene: DiskScene) -> list[LoadPlace]:
         if (load.wave is None and case.static is not None) or load.sides is not None:
             continue
         if load.pressure is not None:
-            left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
+            left, bottom, right, top = next(hole.box for hole in case.holes if hole.name == load.hole)
             middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
             found.append(LoadPlace(middle, middle, abs(load.pressure) * (right - left + top - bottom)))
         elif not load.is_everywhere:

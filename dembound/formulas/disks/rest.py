@@ -70,7 +70,7 @@ def causes_of_rest(scene: DiskScene, motions: Motions, static: Mapping[str, Any]
         return Causes([])
     stages = [each for each in (static, static["before"], static["column"]) if each is not None]
     broken = sum(each["cracks"] for each in stages)
-    beside_hole = static["before"] is not None or scene.case.hole
+    beside_hole = static["before"] is not None or scene.case.holes
     if broken or beside_hole or _by_contacts(scene.ground) > LOOSE:
         where = "beside a hole" if beside_hole else "in ground that they bear more than bonds"
         what = f"{broken:,} bonds broke" if broken else f"contacts slid or opened {where}"

@@ -52,7 +52,7 @@ def places_of_sources(scene: DiskScene) -> dict[str, np.ndarray]:
             nodes, forces = forces_of(load, scene)
             weight = np.hypot(forces[:, 0], forces[:, 1])
             places[f"load.{load.name}"] = (weight @ scene.positions[nodes]) / weight.sum()
-    for hole in scene.case.hole:
+    for hole in scene.case.holes:
         x0, y0, x1, y1 = hole.box
         places[f"hole.{hole.name}"] = 0.5 * np.array([x0 + x1, y0 + y1])
     return places
@@ -230,7 +230,7 @@ def _hold_monitors(scene: DiskScene) -> Iterator[str]:
 
 def _hold_round_faces(scene: DiskScene) -> Iterator[str]:
     """Warnings about flat sides that hold disks of a round sample, which then is too strong."""
-    for side, edge in scene.edges.items() if scene.case.hole else ():
+    for side, edge in scene.edges.items() if scene.case.holes else ():
         table = scene.case.side(side)
         part = table.part_of(edge)
         if edge.axis not in table.prescribed(edge.axis) or len(part.nodes) < FEWEST:

@@ -8,7 +8,6 @@ import numpy as np
 from dembound.boundaries import SIDES, normal_axis
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import MODULI_KEYS
-from dembound.casefile.messages import numbered
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.scene import DiskScene
 from dembound.kinds.disks.continuum_facts import continuum_warnings
@@ -76,7 +75,7 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
     """Holes that remove no disk, as none of the packing is centred in them, or others have removed all of them."""
     brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
     origin, span = np.array([left, bottom]), scene.case.packing.span
-    for number, (place, hole) in enumerate(numbered("hole", scene.case.hole)):
+    for number, (place, hole) in enumerate(scene.case.named_holes):
         if hole.is_shape:
             continue
         x0, y0, x1, y1 = hole.box
@@ -89,7 +88,7 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
         inside = places[hole.takes(places, span)]
         if len(inside) == 0:
             yield f"{place}: no particle is centred in it, so it removes none"
-        for other in scene.case.hole[:number]:
+        for other in scene.case.holes[:number]:
             if len(inside) and other.takes(inside, span).all() and (other.stage == "before" or hole.stage == "after"):
                 yield f"{place}: lies within hole.{other.name}, so it removes no more particles"
 
@@ -107,7 +106,7 @@ def _unlike_strengths(scene: DiskScene, own: Own) -> Iterator[str]:
 def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:
     """Holes that a periodic side cuts: the part beyond it does not come in again at the opposite side."""
     left, bottom, right, top = scene.case.packing.box
-    for place, hole in numbered("hole", scene.case.hole):
+    for place, hole in scene.case.named_holes:
         x0, y0, x1, y1 = hole.box
         cut = {"left": x0 < left < x1, "right": x0 < right < x1, "bottom": y0 < bottom < y1, "top": y0 < top < y1}
         for side in (side for side in SIDES if cut[side] and scene.case.side(side).is_periodic):
@@ -125,7 +124,7 @@ def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
         return
     if any(table is not None and side in sides and 0 in table.prescribed(0) for side, table in static.boundary.items()):
         return
-    for place, hole in numbered("hole", case.hole):
+    for place, hole in case.named_holes:
         x0, y0, x1, y1 = hole.box
         inside = box[0] < x0 and x1 < box[2] and box[1] < y0 and y1 < box[3]
         more = GIVES_WAY * (max(x1 - x0, y1 - y0) / min(box[2] - box[0], box[3] - box[1])) ** 2

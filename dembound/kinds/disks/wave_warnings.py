@@ -284,7 +284,7 @@ def _shears(scene: DiskScene, axis: int) -> bool:
     ends = [table for side, table in sides.items() if normal_axis(side) == axis and not table.is_free]
     if translations:  # all motion is across the axis: else the body moves as a row of bars
         return bool(ends) or any(not _spans(scene, load, axis) for load in case.load)
-    if len({normal_axis(side) for side in sides}) > 1 or case.hole or case.load:
+    if len({normal_axis(side) for side in sides}) > 1 or case.holes or case.load:
         return True
     return any(normal_axis(side) == axis and "s" in table.waves for side, table in sides.items())  # plane waves
 

@@ -157,7 +157,7 @@ def _covered(case: DiskCase) -> Iterator[str]:
 
 def _disturbed(case: DiskCase) -> Iterator[str]:
     """Lines on features that Lamb's half-space does not have: holes, and other waves."""
-    if case.hole:
+    if case.holes:
         yield "hole: Lamb's half-space has none"
     for name in sorted(case.entering):
         yield f"wave.{name}: enters through a side; the solution is that of the load alone"

@@ -119,21 +119,21 @@ def hole_of(scene: DiskScene) -> Circle:
     """The only hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
     case = scene.case
     problems = [*law_problems(case), *motion_problems(case)]
-    if len(case.hole) != 1 or not isinstance(case.hole[0], Circle):
+    if len(case.holes) != 1 or not isinstance(case.holes[0], Circle):
         problems.append("hole: the solution is that of one circle")
     for side in SIDES:
         table = case.side(side)
         surface = side == "top" and surface_of(scene) is not None
         if not (table.is_artificial or surface):
             problems.append(f'boundary.{side}.type: is "{table.type}", must be a side beyond which the rock goes on')
-    for place, each in numbered("hole", case.hole):
+    for place, each in case.named_holes:
         reached = [
             side for side, is_beyond in zip(SIDES, _beyond(each.box, case.packing.box), strict=True) if is_beyond
         ]
         problems += [f"{place}: reaches boundary.{side}; the solution is that of a closed circle" for side in reached]
     if problems:
         raise CaseError(problems)
-    hole = case.hole[0]
+    hole = case.holes[0]
     assert isinstance(hole, Circle)
     return hole
 

@@ -74,7 +74,7 @@ class ExactPlaneWave(Exact[DiskCase]):
     def of(cls, case: DiskCase) -> ExactPlaneWave | None:
         """The solution of a case; None if it is another problem."""
         other = case.is_damped or len(case.layer) > 1
-        if other or case.hole or case.load or case.static or len(case.driving) != 1:
+        if other or case.holes or case.load or case.static or len(case.driving) != 1:
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])
@@ -126,7 +126,7 @@ class ExactLayeredColumn(Exact[DiskCase]):
     @classmethod
     def of(cls, case: DiskCase) -> ExactLayeredColumn | None:
         """The solution of a case; None if it is another problem. Raises CaseError for a wave that jumps."""
-        if len(case.layer) < 2 or case.hole or case.load or case.static or list(case.driving) != ["bottom"]:
+        if len(case.layer) < 2 or case.holes or case.load or case.static or list(case.driving) != ["bottom"]:
             return None
         bottom, top = case.side("bottom"), case.side("top")
         enters = (bottom.factors or bottom.is_outside) and not bottom.is_interface

@@ -1,0 +1,74 @@
+"""The free surface of the ground as a line of points, in a case or a file, and what is above it."""
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from dembound.holes.polygon import Points, Polygon
+from dembound.packings.base import TYPED, Packing
+from dembound.table import Box
+from dembound.waves.file_wave import columns_in, header_of, read_text
+
+ABOVE = "surface"
+"""Name of what is above the surface of the ground, among the holes."""
+
+
+def surface_problems(points: Points, packing: Packing) -> Iterator[str]:
+    """Check the points of a surface against the box of disks."""
+    left, bottom, right, top = packing.box
+    near = TYPED * packing.span
+    if points[0][0] > left + near or points[-1][0] < right - near:
+        yield (
+            f"ground.surface: goes from x = {points[0][0]:.10g} to {points[-1][0]:.10g} m, must reach over the disks, "
+            f"{left:.10g} to {right:.10g} m"
+        )
+    inside = [y for x, y in points if left - near <= x <= right + near]
+    if max(inside, default=bottom) > top + near:
+        yield (
+            f"ground.surface: is {max(inside):.10g} m high, but packing.size ends at y = {top:.10g} m; "
+            "must end at or above it"
+        )
+    if min(inside, default=top) <= bottom + near:
+        low = f"is as low as {min(inside):.10g} m"
+        yield f"ground.surface: {low}, must be above the lower side of the disks, y = {bottom:.10g} m"
+
+
+def require_surface(points: Points) -> None:
+    """Raise ValueError for points that are no surface from left to right."""
+    if len(points) < 2:
+        raise ValueError(f"surface: has {len(points)} points, must have at least two")
+    if any(after < before for (before, _), (after, _) in pairwise(points)):
+        raise ValueError("surface: must go from left to right, so that no x is less than the one before")
+
+
+def points_in_file(name: str, context: Mapping[str, Any]) -> tuple[Points, str]:
+    """The points (m) in a text file, and its text.
+
+    context : as for `FileWave`. Raises ValueError for a file without two columns of numbers, or with other units.
+    """
+    path, given = context.get("folder", Path()) / name, context.get("files", {}).get(name)
+    try:
+        text = read_text(path) if given is None else given
+        rows = columns_in(text, path)
+    except ValueError as error:
+        raise ValueError(str(error).replace("path:", "surface:", 1)) from None
+    if rows.shape[1] != 2:
+        raise ValueError(f'surface: "{path}" has {rows.shape[1]} columns, must have two, x and y in m')
+    if other := OTHER_UNIT.search(header_of(text)):
+        raise ValueError(f'surface: the header of "{path}" names "{other[0]}", must be in m')
+    return tuple((float(x), float(y)) for x, y in rows.tolist()), text
+
+
+OTHER_UNIT = re.compile(r"\b(mm|cm|km|ft|feet|in|inch|yd)\b", re.IGNORECASE)
+"""Units of length in a header other than m."""
+
+
+def air_above(points: Points, box: Box) -> Polygon:
+    """What is above a surface, as a hole in a box of disks (left, bottom, right, top; m)."""
+    (first, left), (last, right), wide = points[0], points[-1], box[2] - box[0]
+    top = max(box[3], *(y for _, y in points)) + wide
+    begin, end = min(first, box[0]) - wide, max(last, box[2]) + wide
+    outline = (begin, left), *points, (end, right), (end, top), (begin, top)
+    return Polygon(type="polygon", name=ABOVE, points=outline)
