@@ -14,7 +14,7 @@ from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.intact import intact_disks, intact_zones
-from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
+from dembound.disks.material.at_rest import StressAtRest, levels_of, stress_at_rest
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
@@ -83,6 +83,7 @@ class DiskBody(Scene):
     feet : the continua below the free-field columns, whose nodes come last.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
+    surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
     all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
     """
 
@@ -99,6 +100,7 @@ class DiskBody(Scene):
     feet: tuple[Surroundings, ...] = ()
     between: Mapping[str, Between] = field(default_factory=dict)
     ground_waves: Undisturbed | None = None
+    surface: np.ndarray | None = None
     all_intact: bool = False
 
     kind = "disks"
@@ -300,7 +302,14 @@ class DiskBody(Scene):
     @cached_property
     def at_rest(self) -> StressAtRest | None:
         """The stress of undisturbed ground with which contacts begin; None if they begin without forces."""
-        return stress_at_rest(self.case, self.ground)
+        return stress_at_rest(self.case, self.ground, self.surface)
+
+    def at_rest_of(self, part: str) -> StressAtRest | None:
+        """The stress with which the contacts of a part begin: of a column with a lower top, that below its own."""
+        seam = self.seams[COLUMNS.index(part)] if part in COLUMNS else None
+        if self.surface is None or seam is None:
+            return self.at_rest
+        return stress_at_rest(self.case, self.ground, level_at(self.surface, seam))
 
     @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
@@ -312,12 +321,25 @@ COLUMNS = ("column", "right_column")
 """The names of the parts that are free-field columns."""
 
 
+def level_at(surface: np.ndarray, seam: Seam) -> np.ndarray:
+    """The point (2, 1) m of a surface (2, k) at the side for which a column stands."""
+    return surface[:, [-1]] if seam.sides == ("right",) else surface[:, [0]]
+
+
 def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
     """The particle ranges of `count` particles by part: the free-field columns, if there are any, and the body."""
     columns = {name: seam.disks for name, seam in zip(COLUMNS, seams, strict=False)}
     return {**columns, "body": slice(columns_end(seams), count)}
 
 
-def differs_by_level(case: DiskCase, ground: PackedMaterial) -> bool:
-    """Whether each row of bricks has constants of its own: of layers, or of a history-dependent law with K0."""
-    return ground.is_layered or (ground.law.has_history and case.static is not None and case.static.k0 is not None)
+def levels_in(
+    case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: StressAtRest | None
+) -> np.ndarray | None:
+    """A number (n,) of each disk, the same for copies with the same constants; None if all copies have.
+
+    Rows of bricks have constants of their own in layers, or under a history-dependent law with K0.
+    """
+    has_k0 = ground.law.has_history and case.static is not None and case.static.k0 is not None
+    if not (ground.is_layered or has_k0):
+        return None
+    return levels_of(assembly, ground.brick, at_rest if has_k0 else None)

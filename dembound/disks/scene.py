@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import zip_longest
 
 import numpy as np
 
-from dembound.boundaries import Periodic, is_far
+from dembound.boundaries import Boundary, Periodic, is_far
+from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
+from dembound.boundaries.roller import Roller
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
@@ -15,13 +18,15 @@ from dembound.continuum.sizing import GridSizes
 from dembound.disks.bearing import Springs, bearing_springs
 from dembound.disks.body import (
     DiskBody,
-    differs_by_level,
+    level_at,
+    levels_in,
     parts_of,
     with_half_contacts,
     with_layers,
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.material.at_rest import stress_at_rest
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import layered
@@ -203,7 +208,7 @@ def _scene(
         assembly, seams = with_columns(ground.brick, body, standing, case.column_rows, (left, bottom, right))
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
-    count = len(assembly.radii)
+    count, surface = len(assembly.radii), case.surface
     assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
@@ -211,7 +216,7 @@ def _scene(
         ground,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
-        by_level=differs_by_level(case, ground),
+        _levels(case, ground, assembly, seams, surface),
     )
     outside, layout = None, slots
     if outline is not None:
@@ -238,8 +243,24 @@ def _scene(
         feet=tuple(feet),
         between=between,
         ground_waves=waves,
+        surface=surface,
     )
     return with_waves(scene, case.wave)
+
+
+def _levels(
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    seams: tuple[Seam, ...],
+    surface: np.ndarray | None,
+) -> dict[str, np.ndarray | None]:
+    """Levels of the disks of each part, see `levels_in`; those of columns under their own stress at rest."""
+    found = {}
+    for (name, disks), seam in zip_longest(parts_of(len(assembly.radii), seams).items(), seams):
+        own = surface if surface is None or seam is None else level_at(surface, seam)
+        found[name] = levels_in(case, ground, assembly.part(disks), stress_at_rest(case, ground, own))
+    return found
 
 
 def _standing(
@@ -294,6 +315,8 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     static = case.static
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
+        if len(scene.seams) > 1:
+            ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(
@@ -302,8 +325,14 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     standing = Standing((), scene.seams[number].top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
+    surface = None if scene.surface is None else level_at(scene.surface, scene.seams[number])
     intact = scene.intact is not None and bool(scene.intact[scene.seams[number].disks].all())
-    return replace(alone_scene, all_intact=intact)
+    return replace(alone_scene, surface=surface, all_intact=intact)
+
+
+def standing_fast(table: Boundary) -> Boundary:
+    """The support of a column at rest in place of that of its body: one on rollers would slide under what is left."""
+    return Fixed(type="fixed") if isinstance(table, Roller) else table
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:

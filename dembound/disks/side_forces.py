@@ -66,8 +66,8 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
 
     Without those through the seam of a free field, which the column's contacts exert.
     """
-    force, at_rest = np.zeros((3, scene.count)), scene.at_rest
-    if at_rest is None:
+    force = np.zeros((3, scene.count))
+    if scene.at_rest is None:
         return force
     for name, nodes in scene.parts.items():
         body, upright = scene.assembly.part(nodes), name in COLUMNS
@@ -76,26 +76,36 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
         ends, part = _ends(scene, body, edges, (True, False) if upright else scene.case.periodic)
         for seam in () if upright else scene.seams:
             part = np.where(_in_seam(scene, seam, ends, nodes.start), 0.0, part)
-        heights = body.positions[ends.node, 1] + 0.5 * ends.vectors(scene.ground.brick)[:, 1]
+        x, heights = (body.positions[ends.node] + 0.5 * ends.vectors(scene.ground.brick)).T
+        at_rest = scene.at_rest_of(name)
+        assert at_rest is not None
         layer, each = scene.ground.layer_of(heights), np.zeros((3, len(heights)))
         for number in np.unique(layer):
             own = layer == number
             ground = scene.ground.at(float(heights[own][0]))
             bonds = CutBonds.of(ground, ends.only(own), body.positions)
-            each[:, own] = part[own] * _at_rest(ground, at_rest, ends.only(own), bonds, heights[own])
+            each[:, own] = part[own] * _at_rest(ground, at_rest, ends.only(own), bonds, heights[own], x[own])
         for component in range(3):
             np.add.at(force[component], nodes.start + ends.node, each[component])
     return force
 
 
 def _at_rest(
-    ground: PackedMaterial, at_rest: StressAtRest, ends: CutContacts, bonds: CutBonds, heights: np.ndarray
+    ground: PackedMaterial,
+    at_rest: StressAtRest,
+    ends: CutContacts,
+    bonds: CutBonds,
+    heights: np.ndarray,
+    x: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Forces and moments (3, e) of contact ends at heights (e,) m on their disks, in ground of one material."""
+    """Forces and moments (3, e) of contact ends at heights (e,) m on their disks, in ground of one material.
+
+    x : (e,) m, their places, see `StressAtRest.at`.
+    """
     if not at_rest.slides:
-        pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights))
+        pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights, x))
         return pulled
-    pull, shear, bending, _ = rest_forces(ground, at_rest, ends.contact_type, heights)
+    pull, shear, bending, _ = rest_forces(ground, at_rest, ends.contact_type, heights, x)
     bending = np.where(ends.is_second, -bending, bending)
     (nx, ny), arm = bonds.normal, bonds.arm
     return np.stack([pull * nx - shear * ny, pull * ny + shear * nx, bending + arm * shear])

@@ -128,6 +128,19 @@ def level_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
     return float(away[np.argmax(there)]) if holes and there.any() else right - left
 
 
+def surface_over(holes: Sequence[Hole], box: Box, diameter: float) -> np.ndarray:
+    """Points (2, k) m on the upper ends of the ground in a box, from left to right; holes open it from above.
+
+    They are half a mean diameter (m) apart, and within a sixteenth of it.
+    """
+    left, bottom, right, top = box
+    x = np.linspace(left, right, max(2, round(2.0 * (right - left) / diameter) + 1))
+    down = np.arange(top - 0.5 * diameter / FINE, bottom, -diameter / FINE)
+    still = _is_open(holes, np.repeat(x, len(down)), np.tile(down, len(x))).reshape(len(x), -1)
+    opened = np.cumprod(still, axis=1).sum(axis=1)
+    return np.stack([x, top - opened * (diameter / FINE)])
+
+
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:
     """The floor beside the left or right side of a box (left, bottom, right, top; m); None if no hole lowers it there.
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -24,14 +23,14 @@ TOUGH = {"pb_ten": 1e9, "pb_coh": 1e9, "fric": 0.9}
 @pytest.fixture
 def run(lab, monkeypatch) -> Callable[..., Simulation]:
     """Runs a pulse through a body whose contacts below and above a joint are of different types."""
-    twice, by_level = contact_list.brick_constants, partial(plan_rows, by_level=True)
+    twice, by_level = contact_list.brick_constants, lambda part: plan_rows(part, part.tile[:, 1].astype(np.int64))
     monkeypatch.setattr(contact_list, "brick_constants", lambda *each, **more: np.vstack(2 * [twice(*each, **more)]))
 
     def make(
         pattern: str, geometry: str, columns: tuple[dict, dict] | None, joined: bool = True, steps: int = STEPS
     ) -> Simulation:
         for module in (layout, scene_parts):
-            monkeypatch.setattr(module, "plan_rows", lambda part, **_: replace(by_level(part), by_level=joined))
+            monkeypatch.setattr(module, "plan_rows", lambda part, _: replace(by_level(part), by_level=joined))
         words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01)}
         if pattern == "B":
             words["brick"] = (4.0, 4.0)

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
+import numpy as np
+
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
@@ -15,7 +17,7 @@ from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, 
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
-from dembound.holes.hole import Floor, Hole, level_beside
+from dembound.holes.hole import Floor, Hole, level_beside, surface_over
 from dembound.packings.base import Packing
 from dembound.table import Box, Table, quantity
 
@@ -219,6 +221,19 @@ class DiskCase(Case):
             for side in ("left", "right")
         }
         return 0.5 * (box[0] + level["left"] + box[2] - level["right"])
+
+    @cached_property
+    def surface(self) -> np.ndarray | None:
+        """Points (2, k) m on the free surface of the disks from left to right, before an excavation.
+
+        None where the ground is level beside the disks, up to the height of their box.
+        """
+        before = [hole for hole in self.holes if hole.stage == "before"]
+        if not self.floors_of(before):
+            return None
+        if self.ground.points:
+            return np.array(self.ground.points).T
+        return surface_over(before, self.packing.box, 2.0 * self.packing.radius)
 
     @property
     def column_rows(self) -> tuple[int, int]:

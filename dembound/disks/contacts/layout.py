@@ -1,6 +1,7 @@
 """The order of a scene's disks in RAM, and the contacts of the elastic law for its kernels."""
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -160,21 +161,23 @@ as fast one by one."""
 Rows = NeighbourTable | LaneRows
 
 
+NO_LEVELS: Mapping[str, np.ndarray | None] = MappingProxyType({})
+
+
 def lay_out(
     assembly: Assembly,
     ground: PackedMaterial,
     parts: Mapping[str, slice],
     fraction: np.ndarray,
-    *,
-    by_level: bool = False,
+    levels: Mapping[str, np.ndarray | None] = NO_LEVELS,
 ) -> tuple[Layout, tuple[Rows, ...]]:
     """The slots of the disks of a scene, and the contacts of each part between them.
 
     A part of many copies of the brick is held in rows of copies (`lane_rows`); one of few keeps its order.
-    parts : their disks, in order; fraction : (n,) of its mass that each disk has. by_level : see `plan_rows`.
+    parts : their disks, in order; fraction : (n,) of its mass that each disk has. levels : by part, see `plan_rows`.
     """
     each = [assembly.part(disks) for disks in parts.values()]
-    plans = [_plan(part, by_level=by_level) for part in each]
+    plans = [_plan(part, levels.get(name)) for name, part in zip(parts, each, strict=True)]
     if all(plan is None for plan in plans) and not ground.is_damped:  # memories are held in blocks
         layout = Layout.plain(len(assembly.radii))
         return layout, tuple(
@@ -195,11 +198,11 @@ def lay_out(
     return layout, tuple(rows)
 
 
-def _plan(part: Assembly, *, by_level: bool) -> RowPlan | None:
+def _plan(part: Assembly, levels: np.ndarray | None) -> RowPlan | None:
     """The rows of a part, if enough of their lanes would hold disks."""
     if np.prod(part.copies) == 1:
         return None
-    plan = plan_rows(part, by_level=by_level)
+    plan = plan_rows(part, levels)
     return plan if len(part.radii) >= LEAST_FILL * LANES * plan.group_block[-1] else None
 
 

@@ -18,7 +18,7 @@ class RowPlan:
 
     row (n,) row of each disk; column, lane (n,) its place there. group_row (g + 1,) the rows of each group, columns
     (g,) its columns, group_block (g + 1,) its blocks from 0 on, column by column, in each one block for every row.
-    by_level : whether each row of bricks is a group, or two, of its own, as in layered ground.
+    by_level : whether each row of bricks, or part of it, is a group, or two, of its own, as in layered ground.
     """
 
     row: np.ndarray
@@ -59,20 +59,25 @@ class RowPlan:
         return LANES * self.block + self.lane
 
 
-def plan_rows(assembly: Assembly, *, by_level: bool = False) -> RowPlan:
+def plan_rows(assembly: Assembly, levels: np.ndarray | None = None) -> RowPlan:
     """Rows of the copies of each disk of the brick, those in rows that close the frame in groups of their own.
 
     Copies are numbered along the shorter side of the scene first, and cut into eight lengths, one for each lane: the
-    neighbour in the next copy is then in the next column, in the same lane. by_level : for layers, whose disks differ
-    with height; each row of bricks is then a group of its own, with copies along x only, and all these groups have the
-    same columns.
+    neighbour in the next copy is then in the next column, in the same lane. levels : (n,) numbers of the disks for
+    layers, whose disks differ with height, the same in a row of bricks or a part of it; each level is then a group of
+    its own, with copies along x only, and groups as wide have the same columns.
     """
     (across, up), tile = assembly.copies, assembly.tile.astype(np.int64)
     closing = 2 * (tile[:, 0] >= across) + (tile[:, 1] >= up)
-    if by_level:
-        kinds, group = np.unique(2 * tile[:, 1] + (closing >= 2), return_inverse=True)
-        copy = np.where(closing >= 2, 0, tile[:, 0])
-        columns = np.where(kinds % 2 == 0, -(-across // LANES), 1)
+    if levels is not None:
+        kinds, group = np.unique(2 * levels + (closing >= 2), return_inverse=True)
+        first, end = np.zeros(len(kinds), np.int64), np.full(len(kinds), across)
+        if not np.array_equal(levels, tile[:, 1]):
+            first, end = np.full((2, len(kinds)), [[across], [0]])
+            np.minimum.at(first, group, tile[:, 0])
+            np.maximum.at(end, group, tile[:, 0] + 1)
+        copy = np.where(closing >= 2, 0, tile[:, 0] - first[group])
+        columns = np.where(kinds % 2 == 0, -(-(end - first) // LANES), 1)
     else:
         along_x = bool(assembly.size[0] < assembly.size[1])
         regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
@@ -90,7 +95,7 @@ def plan_rows(assembly: Assembly, *, by_level: bool = False) -> RowPlan:
         group_row=group_row,
         columns=columns,
         group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
-        by_level=by_level,
+        by_level=levels is not None,
     )
 
 

@@ -19,6 +19,7 @@ from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.sliding import strains_of, strains_with_slip, within_friction
+from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import STRAIN
 from dembound.places import ROUNDING
@@ -33,7 +34,8 @@ class StressAtRest:
     uniform : (3,) xx, yy, xy in Pa, tension positive, at all heights.
     tops : (l,) m, the upper ends of layers from the surface down. growth : (l,) Pa/m, by which σ_yy grows per metre of
     depth in each, negative under weight; k0 : (l,) the stress along x over that along y due to weight. low : m, height
-    down to which there are contacts.
+    down to which there are contacts. surface : points (2, k) m on the free surface from left to right, below the top of
+    the first layer; None: at its top.
     slides : whether contacts slide or open under it. is_borne : whether the packing can bear it so.
     """
 
@@ -42,6 +44,7 @@ class StressAtRest:
     growth: np.ndarray
     k0: np.ndarray
     low: float
+    surface: np.ndarray | None = None
     slides: bool = False
     is_borne: bool = True
 
@@ -50,10 +53,18 @@ class StressAtRest:
         """Whether the stress is the same at all heights."""
         return not self.growth.any()
 
-    def at(self, heights: np.ndarray) -> np.ndarray:
-        """Stress (3, k) xx, yy, xy in Pa at heights (k,) m; above the surface that of no weight."""
-        thick = np.append(-np.diff(self.tops), np.inf)
-        within = np.clip(self.tops[:, None] - heights, 0.0, thick[:, None])
+    def at(self, heights: np.ndarray, x: np.ndarray | None = None) -> np.ndarray:
+        """Stress (3, k) xx, yy, xy in Pa at heights (k,) m; above the surface that of no weight.
+
+        x : (k,) m, places along the surface; None: where it is at the top of the first layer. Weight is that straight
+        above a place.
+        """
+        thick = np.append(-np.diff(self.tops), np.inf)[:, None]
+        tops = self.tops[:, None]
+        if x is not None and self.surface is not None:
+            lower = np.minimum(tops, np.interp(x, *self.surface))
+            thick, tops = np.clip(thick - tops + lower, 0.0, None), lower
+        within = np.clip(tops - heights, 0.0, thick)
         vertical = self.growth @ within
         ratio = self.k0[self.layer_of(heights)]
         stress: np.ndarray = self.uniform[:, None] + np.stack([ratio * vertical, vertical, np.zeros_like(vertical)])
@@ -72,17 +83,18 @@ class StressAtRest:
         return heights, self.uniform + np.outer(vertical, [self.k0[layer], 1.0, 0.0])
 
 
-def stress_at_rest(case: DiskCase, ground: PackedMaterial) -> StressAtRest | None:
+def stress_at_rest(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None = None) -> StressAtRest | None:
     """The stress with which the contacts of a case begin; None if they begin without forces.
 
-    Weight counts from the height at which the packing's mass ends.
+    Weight counts from the height at which the packing's mass ends. surface : points (2, k) m; None: that of the box.
     """
     static = case.static
     if static is None or not case.begins_stressed:
         return None
     down = 0.0 if static.k0 is None else sum(gravity(case.load))
-    surface = case.box[3] + float(ground.brick.mass_offset[1])
-    layers = [(surface, ground.density, static.k0)]
+    offset = float(ground.brick.mass_offset[1])
+    top = case.box[3] + offset
+    layers = [(top, ground.density, static.k0)]
     if isinstance(ground, LayeredGround):
         own = [case.layer[zone.layer].k0 for zone in ground.layers]
         each = zip(ground.layers, own, strict=True)
@@ -90,10 +102,11 @@ def stress_at_rest(case: DiskCase, ground: PackedMaterial) -> StressAtRest | Non
     tops, densities, ratios = zip(*layers, strict=True)
     at_rest = StressAtRest(
         uniform=np.array(static.stress or (0.0, 0.0, 0.0)),
-        tops=np.minimum(tops, surface),
+        tops=np.minimum(tops, top),
         growth=down * np.array(densities),
         k0=np.array([ratio or 0.0 for ratio in ratios]),
         low=case.box[3] - case.column_rows[1] * float(ground.brick.size[1]),
+        surface=None if surface is None or static.k0 is None else np.stack([surface[0], surface[1] + offset]),
     )
     return _with_sliding(ground, at_rest) if ground.law.has_history else at_rest
 
@@ -132,18 +145,24 @@ def pair_forces(ground: PackedMaterial) -> np.ndarray:
     return forces.reshape(3, -1, 3)
 
 
-def rest_forces(ground: PackedMaterial, at_rest: StressAtRest, kind: np.ndarray, heights: np.ndarray) -> np.ndarray:
+def rest_forces(
+    ground: PackedMaterial, at_rest: StressAtRest, kind: np.ndarray, heights: np.ndarray, x: np.ndarray | None = None
+) -> np.ndarray:
     """Normal, shear and bending forces of the brick's contacts with their bonds, and shear forces of contacts, (4, k).
 
-    Where some slide: of types (k,) at heights (k,) m in ground of one material. Within a layer forces change with
-    height as the stress does, so they stay in balance and within friction.
+    Where some slide: of types (k,) at heights (k,) m, and places x (k,) m, in ground of one material. Within a layer
+    forces change with height as the stress does, so they stay in balance and within friction.
     """
     found, layer = np.empty((4, len(kind))), at_rest.layer_of(heights)
     for number in np.unique(layer).tolist():
         own = layer == number
         (top, bottom), stresses = at_rest.ends(number)
         one, other = (_sliding(ground, stress)[:, kind[own]] for stress in stresses)
-        found[:, own] = one + np.clip((top - heights[own]) / (top - bottom), 0.0, None) * (other - one)
+        part = np.clip((top - heights[own]) / (top - bottom), 0.0, None)
+        if x is not None and at_rest.surface is not None:
+            vertical, (least, most) = at_rest.at(heights[own], x[own])[1], stresses[:, 1]
+            part = (vertical - least) / (most - least) if most != least else np.zeros(len(vertical))
+        found[:, own] = one + part * (other - one)
     return found
 
 
@@ -157,22 +176,46 @@ def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
     return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
 
 
+def levels_of(assembly: Assembly, brick: Brick, at_rest: StressAtRest | None) -> np.ndarray:
+    """A number (n,) of each disk, the same for copies of a brick under the same stress at rest: of one row of bricks.
+
+    Below a surface that is not level only bricks below equal level parts of it have the same.
+    """
+    row = assembly.tile[:, 1].astype(np.int64)
+    if at_rest is None or at_rest.surface is None:
+        return row
+    _, first, tile = np.unique(assembly.tile[:, 0], return_index=True, return_inverse=True)
+    left = assembly.positions[first, 0] - brick.positions[assembly.brick_particle[first], 0]
+    reach, points = float(np.abs(brick.vectors[:, 0]).max()), at_rest.surface
+    low, high = left - reach, left + float(brick.size[0]) + reach
+    ends = np.interp(np.stack([low, high]), *points)
+    inside = (points[0] > low[:, None]) & (points[0] < high[:, None])
+    least = np.minimum(ends.min(axis=0), np.where(inside, points[1], np.inf).min(axis=1))
+    most = np.maximum(ends.max(axis=0), np.where(inside, points[1], -np.inf).max(axis=1))
+    is_level = most - least <= ROUNDING * (at_rest.tops[0] - at_rest.low)
+    heights, kind = np.unique(np.round(least[is_level] - at_rest.low, 6), return_inverse=True)
+    number = len(heights) + np.arange(len(left))
+    number[is_level] = kind
+    found: np.ndarray = row * (len(heights) + len(left)) + number[tile]
+    return found
+
+
 def stressed(
     ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: StressAtRest | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Constants of contacts that begin under a stress at rest, the row of each contact (b,), and the slip of each row.
 
     constants : (2b, c + 3 or more) of the brick's contacts, of each pairing of zones in a layered ground. Where the
-    stress depends on height, each row of bricks has its own. Slip in m.
+    stress depends on height, each row of bricks has its own, see `levels_of`. Slip in m.
     """
     if at_rest is None:
         return constants, assembly.contact_type, np.zeros(len(constants))
     brick = ground.brick
-    middle = brick.positions[brick.pairs[:, 0], 1] + 0.5 * brick.vectors[:, 1]
+    across, middle = (brick.positions[brick.pairs[:, 0]] + 0.5 * brick.vectors).T
     began = slice(ground.law.width, ground.law.width + STRAIN)
     kind, types = assembly.contact_type.astype(np.int64), 2 * len(middle)
-    _, first, row = np.unique(assembly.tile[:, 1], return_index=True, return_inverse=True)
-    base = assembly.positions[first, 1] - brick.positions[assembly.brick_particle[first], 1]
+    _, first, row = np.unique(levels_of(assembly, brick, at_rest), return_index=True, return_inverse=True)
+    begin = assembly.positions[first] - brick.positions[assembly.brick_particle[first]]
     row = np.zeros(len(kind), np.int64) if at_rest.is_uniform else row.reshape(-1)[assembly.pairs[:, 0]]
     used, variant = np.unique(row * len(ground.pairings) + kind // types, return_inverse=True)
     zones = [each.material for each in ground.zones] if isinstance(ground, LayeredGround) else [ground]
@@ -182,14 +225,16 @@ def stressed(
         found, slips, zip(*np.divmod(used, len(ground.pairings)), strict=True), strict=True
     ):
         own[:] = constants[pairing * types : (pairing + 1) * types]
-        heights, between = base[number] + middle, ground.pairings[pairing]
+        x, heights = begin[number, 0] + across, begin[number, 1] + middle
+        between = ground.pairings[pairing]
         contacts, bonds = ground.stiffnesses(own[: len(middle)])
         if at_rest.slides:
             every = np.arange(len(middle))
-            forces = np.mean([rest_forces(zones[zone], at_rest, every, heights) for zone in between], axis=0)
+            forces = np.mean([rest_forces(zones[zone], at_rest, every, heights, x) for zone in between], axis=0)
             strains, slip[:] = strains_with_slip(forces, contacts, bonds)
         else:
-            forces = np.einsum("kbs,sb->bk", np.mean([linear[zone] for zone in between], axis=0), at_rest.at(heights))
+            stress = at_rest.at(heights, x)
+            forces = np.einsum("kbs,sb->bk", np.mean([linear[zone] for zone in between], axis=0), stress)
             strains = strains_of(forces.T, contacts + bonds)
         own[:, began] = np.concatenate([strains.T, strains.T])
     return found.reshape(-1, constants.shape[1]), kind % types + types * variant.reshape(-1), slips.reshape(-1)

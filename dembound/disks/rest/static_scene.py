@@ -11,7 +11,7 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.material.constants import limits_of
-from dembound.disks.scene import DiskScene
+from dembound.disks.scene import DiskScene, standing_fast
 from dembound.disks.side_forces import forces_at_rest, side_forces
 from dembound.disks.sides import media_of
 from dembound.disks.stepping.balance import mean_rotations
@@ -104,6 +104,9 @@ class StaticScene:
             if side in scene.edges:
                 for part, medium in media_of(scene, side):
                     _support(scene, table, part, medium, builder)
+                if len(scene.seams) > 1:
+                    columns = scene.edges[side].only(scene.edges[side].nodes < scene.column_count, 0.0)
+                    _hold_too(standing_fast(table), table, columns, builder)
         self.static = static
         stressed = scene.at_rest is not None
         self._tractions = None if static.stress is None or stressed else Tractions(scene, static.stress)
@@ -169,6 +172,12 @@ def _support(scene: DiskScene, table: Boundary, edge: Edge, medium: BoundaryMedi
         builder.held = components
         table.support(edge.only(chosen, edge.length), medium, scene.case.wave, builder)
     builder.held = held
+
+
+def _hold_too(table: Boundary, other: Boundary, edge: Edge, builder: SupportBuilder) -> None:
+    """Add rows that hold the disks of a side as one table does, but another one does not."""
+    for component in sorted({*table.prescribed(edge.axis)} - {*other.prescribed(edge.axis), *builder.held}):
+        builder.add(edge.nodes, component, prescribed=True)
 
 
 def without_own_continua(scene: DiskScene) -> DiskScene:

@@ -55,7 +55,7 @@ class LoadFactor(Every):
             plain = np.column_stack([plain, *limits[:4]])
         self._pairs = []
         for part in system.disks.parts:
-            constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest)
+            constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest_of(part.name))
             constants, columns = np.split(constants, [scene.ground.law.width + STRAIN], axis=1)
             pairs = part.pairs._replace(
                 constants=of_law(constants),

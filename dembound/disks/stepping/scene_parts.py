@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.continuum.part import GridPart
-from dembound.disks.body import COLUMNS, DiskBody, differs_by_level
+from dembound.disks.body import COLUMNS, DiskBody, levels_in
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
@@ -77,7 +77,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         scene.disk_layout,
         _row_plan(scene, name, part),
         _layers(scene, part),
-        scene.at_rest,
+        scene.at_rest_of(name),
         bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
@@ -98,7 +98,8 @@ def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int]
     rows = scene.rows[list(scene.parts).index(name)]
     if not isinstance(rows, LaneRows):
         return None
-    return plan_rows(part, by_level=differs_by_level(scene.case, scene.ground)), int(rows.group_block[0])
+    levels = levels_in(scene.case, scene.ground, part, scene.at_rest_of(name))
+    return plan_rows(part, levels), int(rows.group_block[0])
 
 
 class WallTie(Tie):
@@ -204,7 +205,7 @@ class DiskParts:
         self.parts = tuple(
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
-                lists.get(name), scene.at_rest,
+                lists.get(name), scene.at_rest_of(name),
                 None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
