@@ -50,7 +50,7 @@ def hold_in_order(patch: pytest.MonkeyPatch) -> None:
     Kernels of rows for a stress and for strengths by layer in one would be compiled for two tests alone; each has them
     in others, here and in test_limits_by_layer.py.
     """
-    patch.setattr(layout, "_plan", lambda part, **_: None)
+    patch.setattr(layout, "_plan", lambda part, levels: None)
 
 
 def speed(lab, scene: DiskScene, found: Settled, steps: int = 500) -> float:

@@ -222,6 +222,12 @@ class DiskCase(Case):
         }
         return 0.5 * (box[0] + level["left"] + box[2] - level["right"])
 
+    def is_above_surface(self, hole: Hole) -> bool:
+        """Whether a hole is what lies above the ground at a side where that is lower than the box of disks."""
+        left, _, right, top = self.packing.box
+        beside = hole.box[0] <= left or hole.box[2] >= right
+        return beside and hole.box[3] >= top and bool(self.floors)
+
     @cached_property
     def surface(self) -> np.ndarray | None:
         """Points (2, k) m on the free surface of the disks from left to right, before an excavation.

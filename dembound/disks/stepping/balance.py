@@ -159,14 +159,19 @@ class Balance:
 
         Forces at rest that come through a free-field seam are included.
         """
-        moved = displacement - self.datum
-        force = np.where(self._scene.moves, self.force + np.where(self.let_go, 0.0, self._across), 0.0)
-        return self._relative + relative_work(self._carriers, force, moved, self._ended)
+        return self._relative + relative_work(self._carriers, self._acting, displacement - self.datum, self._ended)
 
     def free_work(self, displacement: np.ndarray) -> float:
-        """Work (J) of the forces up to displacements (3, n) where no side prescribes the motion."""
-        moved = displacement - self.datum
-        return float(self._free) + float(np.sum(np.where(self._scene.moves, self.force, 0.0) * moved))
+        """Work (J) of the forces up to displacements (3, n) where no side prescribes the motion.
+
+        Forces at rest that come through free-field seams are included, which others balance beside unlike columns.
+        """
+        return float(self._free) + float(np.sum(self._acting * (displacement - self.datum)))
+
+    @property
+    def _acting(self) -> np.ndarray:
+        """Forces (3, n) at rest, with those through free-field seams, where no side prescribes the motion."""
+        return np.where(self._scene.moves, self.force + np.where(self.let_go, 0.0, self._across), 0.0)
 
     def share_of_ended(self) -> float:
         """Sum of the sizes of the forces at the start on disks that have broken off since, over all forces."""

@@ -115,7 +115,8 @@ def hollowed(
     ]
     if problems:
         raise CaseError(problems)
-    acting = {side for load in case.load for side in load.sides or ()} | {*case.boundary}
+    acting: set[str] = {side for load in case.load for side in load.sides or ()}
+    acting |= {side for side, table in case.boundary.items() if not table.is_free}
     if case.static is not None:
         acting |= {*case.static.boundary} | ({*SIDES} if case.static.stress is not None else set())
     found = {side: edge_without(edge, kept, may_end=side not in acting) for side, edge in edges.items()}

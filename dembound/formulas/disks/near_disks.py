@@ -63,6 +63,14 @@ are at most 2.1 times as large. Held out, with 160 disks, are 93 % of 96, others
 cuts a hole waves come from both ways, and u = 1/2: of semicircular canyons, compared with disks three times smaller,
 96 % of 432 (benchmarks/walls_in_waves.py)."""
 
+STEPS = 0.2
+"""Error beside a slope between levels, over kD with the wave number k of the slowest waves in the quantity, and over kH
+where the slope's height H is less than 1/k.
+
+A slope of disks is one in steps. In square lattices under SV waves of 42 and 85 diameters, slopes of 30, 45 and 60°
+20 and 40 diameters high, compared with disks five times smaller: 0.07 to 0.42 at the crest, on the face, at the toe and
+up to ten diameters beside them, the median 0.2 (benchmarks/slopes.py)."""
+
 WALL_FACTOR = 2.0
 """95 % of true errors beside holes are at most this factor times `wall_errors`: of means over 12 directions 1.4
 times in lattices under a pressure (224, the largest 1.6), 1.5 times in random packings (240, at most 2.5), under
@@ -101,10 +109,20 @@ def wall_errors(
         for hole in case.holes:
             speed = slowest_speed(ground, hole.box[1], hole.box[3])
             numbers = omega[quantity] / speed, omega["velocity"] / speed
+            if case.is_above_surface(hole):
+                errors.append(_surface_error(case, hole, diameter, numbers[0]))
+                continue
             share = 1.0 if hole.name in case.pressed else _scattered(case, ground, hole, numbers, place)
             errors.append(_wall_error(case, hole, diameter) * share)
         found[quantity] = max(errors)
     return found
+
+
+def _surface_error(case: DiskCase, hole: Hole, diameter: float, number: float) -> float:
+    """Error of the motion beside a slope under waves with a wave number (1/m) in the quantity, see `STEPS`."""
+    high = case.packing.box[3] - max(hole.box[1], case.packing.box[1])
+    number = min(number, 1.0 / diameter)
+    return STEPS * number * diameter * min(number * high, 1.0)
 
 
 def _scattered(

@@ -51,14 +51,17 @@ def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) 
         assert left.length == edge.length
 
 
-def test_holes_that_leave_nothing_are_refused(bar) -> None:
-    tables = {"packing.size": [4.0, 4.0], "monitor": []}
+def test_holes_that_leave_nothing_where_something_acts_are_refused(bar) -> None:
+    tables = {"packing.size": [4.0, 4.0], "monitor": [], "boundary.top": {"type": "viscous"}}
+    pit = {"name": "pit", "type": "rectangle", "corners": [-1.0, 3.0, 5.0, 5.0]}
     for corners, error, line in (
         ([-1.0, -1.0, 5.0, 5.0], PackingError, "no disk is left of the body"),
-        ([-1.0, 3.0, 5.0, 5.0], CaseError, "hole: holes remove all "),
+        (pit["corners"], CaseError, "hole: holes remove all "),
     ):
         with pytest.raises(error, match=line):
-            build(bar({**tables, "hole": [{"name": "pit", "type": "rectangle", "corners": corners}]}))
+            build(bar({**tables, "hole": [pit | {"corners": corners}]}))
+    scene = build(bar({**tables, "boundary.top": {"type": "free"}, "hole": [pit]}))
+    assert "top" not in scene.edges
 
 
 BESIDE = {"type": "free_field"}

@@ -260,7 +260,7 @@ def test_disks_that_a_side_cuts_loose_stand_in_the_column_and_others_are_refused
 
 def test_a_column_of_more_rows_than_the_body_has_its_twins_at_the_same_height(dense_brick):
     body = tile(dense_brick, (2, 3), OPEN, (30.0, 2 * dense_brick.size[1]))
-    joint, (seam,) = with_columns(dense_brick, body, (Standing(BOTH),), rows=(2, 7), beside=(-5.0, 0.0))
+    joint, (seam,) = with_columns(dense_brick, body, (Standing(BOTH),), rows=(2, 7), beside=(-5.0, 0.0, 40.0))
     count = seam.disks.stop
     assert count == joint.columns[0].disks.stop == len(tile(dense_brick, (1, 7), (True, False)).radii)
     assert joint.columns[0].copies == (1, 7)
