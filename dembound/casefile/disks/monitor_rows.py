@@ -24,7 +24,7 @@ class MonitorTable(Table):
     """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
 
     A row `NAME` along the surface becomes the monitors `NAME_1`, `NAME_2` and so on, at equal steps of x from the left.
-    Each is on the outline of the uppermost ground, as holes leave it.
+    Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
     """
 
     name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
@@ -43,10 +43,14 @@ class MonitorTable(Table):
         None, unit="m", means="length", help="step along x from one monitor of a row to the next", gt=0.0
     )
     from_: float | None = quantity(
-        None, unit="m", means="place", alias="from", help="x of the first; absent: half a step from the left side"
+        None,
+        unit="m",
+        means="place",
+        alias="from",
+        help="x of the first; absent: half a step from the left side of the ground",
     )
     to: float | None = quantity(
-        None, unit="m", means="place", help="largest x of a row; absent: half a step from the right side"
+        None, unit="m", means="place", help="largest x of a row; absent: half a step from its right side"
     )
 
     @model_validator(mode="after")
@@ -72,7 +76,7 @@ class MonitorTable(Table):
         first = left + 0.5 * self.spacing if self.from_ is None else self.from_
         last = right - 0.5 * self.spacing if self.to is None else self.to
         whole = (last - first) / self.spacing
-        count = math.floor(whole * (1.0 + TYPED) + TYPED) + 1
+        count = math.floor(whole + TYPED) + 1
         if self.from_ is None and count > 0:
             first += (0.5 if self.to is None else 1.0) * (whole - (count - 1)) * self.spacing
         return first, count
@@ -101,10 +105,10 @@ def _row(row: MonitorTable, tables: Mapping[str, Any]) -> Iterator[Monitor | str
     top = boundary.get("top", Free())
     if not (packing and ground and top) or None in tables["hole"]:
         return
-    if not top.is_free:
+    box, limits = ground.box(packing), reach(ground, packing, boundary)
+    if not (top.is_free or "top" in packing.gaps(box)):
         yield f'along: needs a free surface, but boundary.top.type is "{top.type}"'
         return
-    box, limits = ground.box(packing), reach(ground, packing, boundary)
     near = TYPED * packing.span
     for key, x in (("from", row.from_), ("to", row.to)):
         if x is not None and not limits[0] - near <= x <= limits[2] + near:
@@ -112,8 +116,8 @@ def _row(row: MonitorTable, tables: Mapping[str, Any]) -> Iterator[Monitor | str
             return
     first, count = row.steps(box[0], box[2])
     if not 0 < count <= MOST_MONITORS:
-        many = f"makes {count:,} monitors, must make {MOST_MONITORS:,} or less"
-        yield f"spacing: {many if count > 0 else 'leaves no place for a monitor; give another one, or other from and to'}"
+        none = "leaves no place for a monitor; give another one, or other from and to"
+        yield f"spacing: {f'makes {count:,} monitors, must make {MOST_MONITORS:,} or less' if count > 0 else none}"
         return
     assert row.spacing is not None
     along = np.round(first + row.spacing * np.arange(count), DIGITS)
