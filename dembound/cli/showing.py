@@ -190,7 +190,7 @@ def signals(
     *,
     of: SignalsShown,
 ) -> None:
-    """Draw spectra, record sections, hodographs, or amplification along the surface (PNG and CSV).
+    """Draw spectra, sections, hodographs or surfaces (PNG and CSV).
 
     The table has the name of the picture, with the ending .csv.
     """
