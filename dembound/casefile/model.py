@@ -246,7 +246,8 @@ class Schema:
     problems : finds mistakes between tables, from the tables and the file's data. optional : those that may be absent.
     staged : those that may be absent and have their own sides: the table, and the type of its boundary.SIDE.
     completed : the tables of a file with keys that follow from other tables, and what these lack for that. completing :
-    by table, the list from whose entries they follow where each gives them.
+    by table, the list from whose entries they follow where each gives them. expanded : the validated tables, invalid
+    ones None, with single entries in place of those that stand for several, and the mistakes of these.
     """
 
     case: type[Case]
@@ -262,6 +263,7 @@ class Schema:
     staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
     completed: Callable[[Tables], tuple[Tables, list[str]]] = lambda data: (data, [])
     completing: Mapping[str, str] = field(default_factory=dict)
+    expanded: Callable[[dict[str, Any]], tuple[dict[str, Any], list[str]]] = lambda tables: (tables, [])
 
     @property
     def keys(self) -> list[str]:

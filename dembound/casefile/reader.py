@@ -209,7 +209,8 @@ class _Reader:
             tables[key] = self._staged(key, data[key], *kinds) if key in data else None
         for key, kind in schema.lists.items():
             tables[key] = self._numbered(key, data.get(key, []), kind)
-        self.problems += schema.problems(tables, data)
+        tables, wrong = schema.expanded(tables)
+        self.problems += [*wrong, *schema.problems(tables, data)]
         return tables
 
     def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:

@@ -110,7 +110,7 @@ def _counted(frames: int) -> Iterator[Callable[[int], None]]:
         yield count
 
 
-Shown = Literal["fourier", "transfer", "response", "section", "hodograph"]
+Shown = Literal["fourier", "transfer", "response", "section", "hodograph", "surface"]
 """What is shown of the monitors' signals."""
 
 
@@ -122,20 +122,25 @@ class SignalsShown:
     component: ComponentOfMotion = None
     monitor: Monitors = None
     reference: Annotated[
-        str | None, typer.Option(metavar="NAME", help="With --show transfer: monitor that is the input.")
+        str | None, typer.Option(metavar="NAME", help="With --show transfer or surface: monitor that is the input.")
     ] = None
 
-    def problems(self, show: Shown) -> Iterator[str]:
-        """Options that have no effect on what is shown."""
-        unused = {
-            "--quantity": (self.quantity, "response", "a response spectrum is of the acceleration"),
-            "--component": (self.component, "hodograph", "a hodograph shows x and y"),
-        }
-        for option, (value, kind, why) in unused.items():
+    def problems(self, show: Shown, count: int) -> Iterator[str]:
+        """Options that have no effect on what is shown, for a number of results."""
+        unused = (
+            ("--quantity", self.quantity, "response", "a response spectrum is of the acceleration"),
+            ("--quantity", self.quantity, "surface", "which shows velocity, acceleration and displacement"),
+            ("--component", self.component, "hodograph", "a hodograph shows x and y"),
+        )
+        for option, value, kind, why in unused:
             if value is not None and show == kind:
                 yield f"{option}: is not allowed with --show {kind}, {why}"
-        if self.reference is not None and show != "transfer":
-            yield "--reference: goes with --show transfer"
+        if self.reference is not None and show not in ("transfer", "surface"):
+            yield "--reference: goes with --show transfer or surface"
+        if show == "surface" and self.component == "rotation":
+            yield "--component: is rotation, must be x, y or both with --show surface"
+        if show == "surface" and count > 1:
+            yield "--show: surface shows one run, name one"
         if self.quantity == "stress" and self.component is not None:
             yield "--component: is of motions; the stress of a bar is that along it"
 
@@ -153,6 +158,19 @@ class SignalsShown:
             return plot_transfer(files, self.component, of, names, self.reference)
         return (plot_section if show == "section" else plot_fourier)(files, self.component, of, names)
 
+    def leave_surface(self, file: Path, output: Path, title: str | None) -> None:
+        """Write picture and table of the amplification along the surface, and where its free field is."""
+        from dembound.plot.surface import plot_surface
+        from dembound.results.surface import amplification
+        from dembound.results.text_files import write_csv
+
+        found = amplification(file, self.monitor or None, self.reference)
+        leave(plot_surface(file, found, self.component), output, title)
+        write_csv(table := output.with_suffix(".csv"), found.rows())
+        out.print(f"wrote {table}")
+        for line in found.notes():
+            out.print(line)
+
 
 @app.command("signals", rich_help_panel=MORE)
 @with_tables
@@ -163,7 +181,8 @@ def signals(
         typer.Option(
             metavar="WHAT",
             help="fourier: amplitude spectra; transfer: their ratios to --reference or to free-field twins; response: "
-            "spectra with 5 % damping; section: histories at their distances; hodograph: motion in the plane.",
+            "spectra with 5 % damping; section: histories at their distances; hodograph: motion in the plane; surface: "
+            "peaks, spectra and end of the motion along the surface over the free field's.",
         ),
     ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),
@@ -171,14 +190,17 @@ def signals(
     *,
     of: SignalsShown,
 ) -> None:
-    """Draw spectra, record sections or hodographs (PNG and CSV).
+    """Draw spectra, sections, hodographs or surfaces (PNG and CSV).
 
     The table has the name of the picture, with the ending .csv.
     """
     from dembound.results.reader import understood
 
-    if problems := list(of.problems(show)):
+    if problems := list(of.problems(show, len(results))):
         raise CaseError(problems)
     files = [results_file(path) for path in results]
     with understood(*files):
+        if show == "surface":
+            of.leave_surface(files[0], output, title)
+            return
         leave(of.draw(files, show), output, title, output.with_suffix(".csv"))

@@ -34,6 +34,9 @@ from dembound.places import is_within, nearest
 Monitors = tuple[dict[str, int], dict[str, Between]]
 """Name -> node, and name -> place of the monitors in a continuum."""
 
+MOST_LINES = 10
+"""Most monitors at places without motion that have a line each."""
+
 DIGITS = 1e-9
 """Part of the last digit of a place by which a limit may be missed."""
 
@@ -146,6 +149,8 @@ class _Around:
                 x, y = self._rounded(monitor.position, np.array([x, y]))
                 advice = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
                 problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {advice}")
+        if len(problems) > MOST_LINES:
+            problems[MOST_LINES:] = [f"monitor: so do {len(problems) - MOST_LINES} more; limit a row by from and to"]
         if problems:
             raise CaseError(problems)
 

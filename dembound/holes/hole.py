@@ -101,6 +101,10 @@ FINE = 8
 """Places per diameter at which points are tested for being in a hole."""
 
 
+HALVINGS = 50
+"""Bisections of half a diameter: to 1e-15 of it."""
+
+
 class Floor(NamedTuple):
     """A floor beside the left or right side of a rectangle, with no ground above.
 
@@ -117,6 +121,32 @@ def _is_open(holes: Sequence[Hole], x: np.ndarray | float, y: np.ndarray | float
     return np.any([hole.takes(places, span=0.0) for hole in holes], axis=0)
 
 
+def surface_below(holes: Sequence[Hole], box: Box, along: np.ndarray, diameter: float) -> np.ndarray:
+    """Heights y (k,) m of the outline of the uppermost ground in a box at x (k,) m; nan where holes leave none.
+
+    box : left, bottom, right, top, m. diameter : mean diameter of the disks, m. Ground that reaches a height half a
+    diameter below the top has the height of the top; strips of less than half a diameter may be missed. The heights are
+    those of the solid side of the outline, to the last bits.
+    """
+    bottom, top = box[1], box[3]
+    heights = np.full(len(along), np.nan)
+    waiting = np.arange(len(along))
+    for y in np.append(np.arange(top - 0.5 * diameter, bottom, -0.5 * diameter), bottom):
+        solid = ~_is_open(holes, along[waiting], y) if holes else np.ones(len(waiting), dtype=bool)
+        heights[waiting[solid]] = y
+        waiting = waiting[~solid]
+    level = heights == top - 0.5 * diameter
+    heights[level] = top
+    below = np.flatnonzero(~level & ~np.isnan(heights))
+    low, high = heights[below], heights[below] + 0.5 * diameter
+    for _ in range(HALVINGS if len(below) else 0):
+        middle = 0.5 * (low + high)
+        is_open = _is_open(holes, along[below], middle)
+        low, high = np.where(is_open, low, middle), np.where(is_open, middle, high)
+    heights[below] = low
+    return heights
+
+
 def level_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> float:
     """Length (m) from the left or right side of a box inwards over which no hole opens its upper side.
 
@@ -126,19 +156,6 @@ def level_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
     away = np.arange(0.5 * diameter, right - left, diameter / FINE)
     there = _is_open(holes, left + away if side == "left" else right - away, top - 0.5 * diameter)
     return float(away[np.argmax(there)]) if holes and there.any() else right - left
-
-
-def surface_over(holes: Sequence[Hole], box: Box, diameter: float) -> np.ndarray:
-    """Points (2, k) m on the upper ends of the ground in a box, from left to right; holes open it from above.
-
-    They are half a mean diameter (m) apart, and within a sixteenth of it.
-    """
-    left, bottom, right, top = box
-    x = np.linspace(left, right, max(2, round(2.0 * (right - left) / diameter) + 1))
-    down = np.arange(top - 0.5 * diameter / FINE, bottom, -diameter / FINE)
-    still = _is_open(holes, np.repeat(x, len(down)), np.tile(down, len(x))).reshape(len(x), -1)
-    opened = np.cumprod(still, axis=1).sum(axis=1)
-    return np.stack([x, top - opened * (diameter / FINE)])
 
 
 def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) -> Floor | None:

@@ -93,7 +93,7 @@ def _react(points, within, block, ties):
 
 @njit(**_WITHIN)
 def _particles(block, u, v, lag, ties):
-    """Fill ties.own (24,) with the motion of the block's particles, relative to their twins if they have any."""
+    """Fill ties.own (24,) with the motion of the block's particles from rest, relative to twins if they have any."""
     for lane in range(LANES):
         k = U(block) * _STEP + U(lane)
         i, twin = U(ties.particle[k]), ties.twin[k]
@@ -101,7 +101,7 @@ def _particles(block, u, v, lag, ties):
             moved = u[c, i] + lag * v[c, i]
             if twin >= 0:
                 moved -= u[c, U(twin)] + lag * v[c, U(twin)]
-            ties.own[c * LANES + lane] = moved
+            ties.own[c * LANES + lane] = moved - ties.rest[U(c) * U(ties.arm.size) + k]
 
 
 @njit(**_WITHIN)

@@ -16,9 +16,10 @@ from dembound.casefile.bar.model import BarLoad, BarMonitor, BarRun
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.layer import Layer, OutsideTable
-from dembound.casefile.disks.load import Load, Monitor
+from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskRun, Reduce
+from dembound.casefile.disks.monitor_rows import MonitorTable
 from dembound.casefile.disks.static import Static
 from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.tables import Chart, ChartChoice, Output, Sweep
@@ -108,7 +109,7 @@ DISKS = (
     Part("`[wave]`", waves.TYPES, waves.Wave, more="Each wave is a table `[wave.NAME]`."),
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
     Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
-    Part("`[[monitor]]`", (Monitor,)),
+    Part("`[[monitor]]`", (MonitorTable,), guide="tasks/show_results"),
     RUN,
     Part("`[output]`", (Output,), guide="tasks/show_results"),
     Part("`[chart]`", (Chart,), guide="tasks/trust_a_result"),

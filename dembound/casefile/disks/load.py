@@ -156,16 +156,20 @@ FREE_FIELD = ".free_field"
 """Suffix of a monitor's name for the history of its twin in the free-field column."""
 
 
-def _is_no_twin(name: str) -> str:
+def is_no_twin(name: str) -> str:
+    """The name of a monitor; raises ValueError for one that a twin has."""
     if name.endswith(FREE_FIELD):
         raise ValueError(f'is "{name}", must not end in "{FREE_FIELD}", which is kept for a monitor\'s twin')
     return name
 
 
 class Monitor(Table):
-    """A place at which the motion of the nearest particle, or of the continuum there, is recorded."""
+    """A place at which the motion of the nearest particle, or of the continuum there, is recorded.
 
-    name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
+    In a file it may be one of a row, see `monitor_rows.MonitorTable`.
+    """
+
+    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
         ..., unit="1", help="name of the history in the results"
     )
     position: tuple[float, float] = quantity(

@@ -17,7 +17,7 @@ from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, 
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
-from dembound.holes.hole import Floor, Hole, level_beside, surface_over
+from dembound.holes.hole import Floor, Hole, level_beside, surface_below
 from dembound.packings.base import Packing
 from dembound.table import Box, Table, quantity
 
@@ -239,7 +239,10 @@ class DiskCase(Case):
             return None
         if self.ground.points:
             return np.array(self.ground.points).T
-        return surface_over(before, self.packing.box, 2.0 * self.packing.radius)
+        (left, bottom, right, _), radius = self.packing.box, self.packing.radius
+        x = np.linspace(left + radius, right - radius, max(2, round((right - left) / radius) - 1))
+        heights = surface_below(before, self.packing.box, x, 2.0 * radius)
+        return np.stack([x, np.where(np.isnan(heights), bottom, heights)])
 
     @property
     def column_rows(self) -> tuple[int, int]:

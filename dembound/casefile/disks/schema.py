@@ -22,6 +22,7 @@ from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_laye
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
+from dembound.casefile.disks.monitor_rows import MonitorTable, without_rows
 from dembound.casefile.disks.static import Static, static_problems
 from dembound.casefile.disks.surface import surface_problems
 from dembound.casefile.disks.targets import law_problems, with_history
@@ -203,9 +204,10 @@ SCHEMA = Schema(
         "layer": TypeAdapter(Layer),
         "hole": TypeAdapter(HoleTable),
         "load": TypeAdapter(Load),
-        "monitor": TypeAdapter(Monitor),
+        "monitor": TypeAdapter(MonitorTable),
     },
     problems=problems_between,
     completed=completed_by_layers,
     completing={"material": "layer"},
+    expanded=without_rows,
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from dembound.disks.bearing import BearingTie
@@ -52,6 +54,9 @@ class DiskSystem(RecordedDisks):
         settling: bool = False,
         load: np.ndarray | None = None,
     ) -> None:
+        if len(scene.seams) > 1 and scene.outside is not None and start is not None and not settling:
+            # a body settled by itself is not where the columns are
+            scene = replace(scene, outside=replace(scene.outside, rest=start.displacement))
         disks = DiskParts(scene, start, None if settling else time_step, watches=not settling)
         for pairs in disks.contacts.values():
             pairs.time_step = time_step

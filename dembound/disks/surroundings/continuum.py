@@ -46,7 +46,8 @@ class Surroundings:
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : depth of free
     edges below those of the packing, m, by side. levels : lower ground beyond left and right sides. twins : (m,) for
     each disk its twin in a free-field column, relative to which it is tied, of two columns in the first at the left and
-    below and in the second at the right; none: tied by its own motion.
+    below and in the second at the right; none: tied by its own motion. rest : (3, n) m, m and rad, displacements of the
+    scene's disks at which ties have no force; None: zero.
     surface_mass : kg/m², of the skin on its upper edge.
     """
 
@@ -60,6 +61,7 @@ class Surroundings:
     levels: Mapping[str, Level]
     twins: tuple[np.ndarray, ...] = ()
     surface_mass: float = 0.0
+    rest: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -183,11 +185,15 @@ class Surroundings:
         """The ties for the kernels; supported (k,) are the nodes of the support table, ascending."""
         line = np.zeros(layout.count, dtype=np.int64)
         line[layout.slot[supported]] = np.arange(len(supported))
-        twins = None
+        disk, twin, rest = self.wall.bonds.particle, None, None
         if self.twins:
-            disk, right = self.wall.bonds.particle, self.wall.bonds.side == SIDES.index("right")
-            twins = layout.slot[np.where(right, self.twins[-1][disk], self.twins[0][disk])]
-        return self.wall.ties(layout.slot, layout.slot[self.nodes], line, twins)
+            right = self.wall.bonds.side == SIDES.index("right")
+            twin = np.where(right, self.twins[-1][disk], self.twins[0][disk])
+        if self.rest is not None:
+            rest = self.rest[:, disk] - (0.0 if twin is None else self.rest[:, twin])
+        return self.wall.ties(
+            layout.slot, layout.slot[self.nodes], line, None if twin is None else layout.slot[twin], rest
+        )
 
     def add_tie_forces(self, layout: Layout, u: np.ndarray, force: np.ndarray) -> None:
         """Add the forces (3, n) of its ties on all nodes of the scene at displacements u (3, slots), at rest."""
@@ -214,7 +220,7 @@ class Surroundings:
         It fills the forces on the continuum, and adds those of the ties times the factor to all.
         """
         slot, tied = self.body.blocks.slot, layout.slot[self.tied]
-        ties = replace(self, twins=()).ties(layout, self.tied)  # twins do not move with the body
+        ties = replace(self, twins=(), rest=None).ties(layout, self.tied)  # twins do not move with the body
         own, rest = aligned_zeros(3, layout.count), aligned_zeros(3, layout.count)
         of_ties = np.zeros((len(tied), 3))
 

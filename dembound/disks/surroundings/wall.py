@@ -136,12 +136,19 @@ class Wall:
         of_disks[1, :, 2] = -self.bonds.arm
         return of_disks, np.einsum("ekt,ktcq->etcq", turns, moved)
 
-    def ties(self, particle: np.ndarray, node: np.ndarray, line: np.ndarray, twin: np.ndarray | None) -> WallTies:
+    def ties(
+        self,
+        particle: np.ndarray,
+        node: np.ndarray,
+        line: np.ndarray,
+        twin: np.ndarray | None,
+        rest: np.ndarray | None = None,
+    ) -> WallTies:
         """The arrays for the kernels.
 
         particle : (n,) slot of every disk of the body; node : (m,) slot of every node of the mesh; line : (slots,) line
         of slots in the support table; twin : (t,) slot of the twin of every tie's disk in a free-field column, None for
-        none.
+        none; rest : (3, t) m, m and rad, motion of the disk less that of the twin without force; None: zero.
         """
         bonds, mesh = self.bonds, self.mesh
         start, place = self._blocks
@@ -174,6 +181,7 @@ class Wall:
             particle=own,
             particle_line=line[own],
             twin=twins,
+            rest=np.zeros(3 * lanes) if rest is None else laid(rest).ravel(),
             along=along,
             along_slope=along_slope,
             up=up,

@@ -201,7 +201,8 @@ class WallTies(NamedTuple):
     last block of each element. points : tuple of N numbers, so that N is part of the type. start : (e + 1,) blocks of
     each element. node : (e, N²) its nodes, row by row, and line, theirs in the support table. reach : (e, 4) first and
     end column, first and end row of the nodes that the ties act on. particle, particle_line : (T,) of the particle;
-    twin (T,) in the free-field column, −1 for none. along, up : (B·N·8,) values of the element's shape functions along
+    twin (T,) in the free-field column, −1 for none; rest (3T,) m, m and rad, its motion less the twin's at which the
+    tie has no force. along, up : (B·N·8,) values of the element's shape functions along
     x and y at the tie's point; along_slope, up_slope their derivatives, 1/m. corrector : (B·12·8,) m and rad, motion x,
     y, rotation of the bond's middle beyond that of the point, each per unit gradient xx, yy, xy, yx. normal : (2T,)
     components x, then y, from the particle to the point; arm (T,) m. stiffness : (3T,) N/m, N/m and N·m of the half
@@ -216,6 +217,7 @@ class WallTies(NamedTuple):
     particle: np.ndarray
     particle_line: np.ndarray
     twin: np.ndarray
+    rest: np.ndarray
     along: np.ndarray
     along_slope: np.ndarray
     up: np.ndarray

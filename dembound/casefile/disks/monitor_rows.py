@@ -1,0 +1,144 @@
+"""The ``[[monitor]]`` tables of a file: single places, and rows along the surface, which become single monitors."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import AfterValidator, model_validator
+
+from dembound.boundaries.free import Free
+from dembound.casefile.disks.ground import Ground, reach
+from dembound.casefile.disks.load import Monitor, is_no_twin
+from dembound.casefile.messages import numbered
+from dembound.casefile.model import MOST_MONITORS
+from dembound.holes.hole import Hole, surface_below
+from dembound.packings.base import TYPED, Packing
+from dembound.table import FileName, Table, quantity
+
+DIGITS = 9
+"""Digits after the point of the places of a row, m: less than disks and edges are apart (`places.ROUNDING`)."""
+
+
+class MonitorTable(Table):
+    """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
+
+    A row `NAME` along the surface becomes the monitors `NAME_1`, `NAME_2` and so on, at equal steps of x from the left.
+    Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
+    """
+
+    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
+        ..., unit="1", help="name of the history in the results; of a row without the numbers"
+    )
+    position: tuple[float, float] | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        help="where; between equally near particles the lowest is taken, of these the leftmost",
+    )
+    along: Literal["surface"] | None = quantity(
+        None, unit="1", help='"surface": a row along the free surface of the ground, instead of position'
+    )
+    spacing: float | None = quantity(
+        None, unit="m", means="length", help="step along x from one monitor of a row to the next", gt=0.0
+    )
+    from_: float | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        alias="from",
+        help="x of the first; absent: half a step from the left side of the ground",
+    )
+    to: float | None = quantity(
+        None, unit="m", means="place", help="largest x of a row; absent: half a step from its right side"
+    )
+
+    @model_validator(mode="after")
+    def _place_or_row(self) -> "MonitorTable":
+        of_rows = [key for key in ("spacing", "from_", "to") if getattr(self, key) is not None]
+        problems = []
+        if self.along is None:
+            problems += ["position: is missing; give it, or along"] if self.position is None else []
+            problems += [f"{self.key_of(key)}: is for a row; give along, too" for key in of_rows]
+        else:
+            problems += ["position: is not allowed together with along"] if self.position is not None else []
+            problems += ["spacing: is missing; a row needs it"] if self.spacing is None else []
+        if problems:
+            raise ValueError("\n".join(problems))
+        return self
+
+    def steps(self, left: float, right: float) -> tuple[float, int]:
+        """First x (m) of a row in ground from one x (m) to another one, and the number of monitors, 0 or less for none.
+
+        Without `from` and `to` the row is as far from the left side as from the right one.
+        """
+        assert self.spacing is not None
+        first = left + 0.5 * self.spacing if self.from_ is None else self.from_
+        last = right - 0.5 * self.spacing if self.to is None else self.to
+        whole = (last - first) / self.spacing
+        count = math.floor(whole + TYPED) + 1
+        if self.from_ is None and count > 0:
+            first += (0.5 if self.to is None else 1.0) * (whole - (count - 1)) * self.spacing
+        return first, count
+
+
+def without_rows(tables: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """The tables of a case with single monitors in place of rows, and the mistakes of rows, one line each.
+
+    Tables and entries that are invalid on their own are None, and so are rows whose surface is therefore not known.
+    """
+    monitors, problems = list[Monitor | None](), list[str]()
+    places = {id(table): place for place, table in numbered("monitor", tables["monitor"])}
+    for table in tables["monitor"]:
+        if table is None or table.along is None:
+            monitors.append(table and Monitor(name=table.name, position=table.position))
+            continue
+        found = list(_row(table, tables))
+        problems += [f"{places[id(table)]}.{line}" for line in found if isinstance(line, str)]
+        monitors += [each for each in found if not isinstance(each, str)] or [None]
+    return {**tables, "monitor": tuple(monitors)}, problems
+
+
+def _row(row: MonitorTable, tables: Mapping[str, Any]) -> Iterator[Monitor | str]:
+    """The monitors of a row, or its mistakes without the place; nothing where other tables are invalid."""
+    packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
+    top = boundary.get("top", Free())
+    if not (packing and ground and top) or None in tables["hole"]:
+        return
+    box, limits = ground.box(packing), reach(ground, packing, boundary)
+    if not (top.is_free or "top" in packing.gaps(box)):
+        yield f'along: needs a free surface, but boundary.top.type is "{top.type}"'
+        return
+    near = TYPED * packing.span
+    for key, x in (("from", row.from_), ("to", row.to)):
+        if x is not None and not limits[0] - near <= x <= limits[2] + near:
+            yield f"{key}: is {x:g}, must be an x of the ground, from {limits[0]:g} to {limits[2]:g} (m)"
+            return
+    first, count = row.steps(box[0], box[2])
+    if not 0 < count <= MOST_MONITORS:
+        none = "leaves no place for a monitor; give another one, or other from and to"
+        yield f"spacing: {f'makes {count:,} monitors, must make {MOST_MONITORS:,} or less' if count > 0 else none}"
+        return
+    assert row.spacing is not None
+    along = np.round(first + row.spacing * np.arange(count), DIGITS)
+    air = ground.above(packing.box)
+    holes = [*tables["hole"], *([] if air is None else [air])]
+    heights = np.round(_surface(along, holes, packing, ground), DIGITS)
+    if np.isnan(heights).any():
+        yield f"along: there is no ground at x = {along[np.isnan(heights)][0]:g} m; give other from and to"
+        return
+    for number, (x, y) in enumerate(zip(along.tolist(), heights.tolist(), strict=True), start=1):
+        yield Monitor(name=f"{row.name}_{number}", position=(x, y))
+
+
+def _surface(along: np.ndarray, holes: Sequence[Hole], packing: Packing, ground: Ground) -> np.ndarray:
+    """Heights y (k,) m of the ground's surface at x (k,) m; nan where holes leave no ground.
+
+    Beyond the sides of the disks it goes on at the height that it has there, and above disks that lie deeper it is
+    level.
+    """
+    box = packing.box
+    if "top" in packing.gaps(ground.box(packing)):
+        return np.full(len(along), ground.box(packing)[3])
+    inside = np.clip(along, box[0] + packing.radius, box[2] - packing.radius)
+    return surface_below(holes, box, inside, 2.0 * packing.radius)
