@@ -205,7 +205,8 @@ class Ledger(Tracker):
         if not self.entries:
             self._came = error
         error -= self._came
-        supplied = self._supplied(max(outside, float(state.supplied[0])), load)
+        came = max(outside, float(state.supplied[0])) if system.supply_is_plain else outside
+        supplied = self._supplied(came, load)
         stored = kinetic, contact, bond, load, balance, outside, loads
         energies = *stored, *taken, law_switch, stepping, supplied, error
         time = (state.step - 1) * run.time_step

@@ -147,10 +147,12 @@ class System:
     turning : the steady forces that rotate with their sides; None if there are none. drag : (n,) 1/s by which the laws
     slow all nodes, over their masses, or (0,) if none do.
     work_before : J, to be added to the work of the present loads from the start on, where they have changed.
-    refused : requested cheaper laws that cannot be used, each in a line with the reason.
+    refused : requested cheaper laws that cannot be used, each in a line with the reason. supply_is_plain : whether the
+    work of the outside contains no work of forces at rest, which are balanced.
     """
 
     refused: tuple[str, ...] = ()
+    supply_is_plain = True
 
     def __init__(self, parts: Sequence[Part], ties: Sequence[Tie], load: np.ndarray) -> None:
         self.parts, self.ties = tuple(parts), tuple(ties)

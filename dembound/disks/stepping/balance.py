@@ -48,6 +48,7 @@ class Balance:
         self.datum = datum
         self._scene, self._steady, self._across = scene, steady, across
         self._of_ended = 0.0
+        self._across_ended = np.zeros(())
         self._ended, self._torn, self.let_go = np.zeros((3, scene.count), dtype=np.bool_)
         self._begun = force.copy()
         self._note_begin()
@@ -58,6 +59,13 @@ class Balance:
     def work(self, displacement: np.ndarray) -> float:
         """Work (J) done up to displacements (3, n), without the work of their rotation, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
+
+    def work_across(self, moved: np.ndarray) -> float:
+        """Work (J) of the forces at rest of free-field seams, for displacements (3, n) since the datum.
+
+        Seams no longer act on disks that they let go; what they had done there until then counts on.
+        """
+        return float(self._across_ended) + float(np.sum(np.where(self.let_go, 0.0, self._across) * moved))
 
     def add_to_loads(self, change: np.ndarray) -> None:
         """Add forces (3, n) N to the steady ones beside those that rotate."""
@@ -134,6 +142,7 @@ class Balance:
         for number in np.flatnonzero(self._stands & ~stands):
             change -= on_side(self._carriers[number], self.force + change)
         self._stands = stands
+        self._across_ended += float(np.sum(np.where(alone, self._across, 0.0) * (moved - 0.5 * step * velocity)))
         self.let_go |= alone
         followers = self.followers
         turned, apart = debris[followers.node], alone[followers.node]
@@ -213,7 +222,7 @@ class Balance:
 _FIXED = ("steady", "datum", "across")
 """The arguments of a balance other than its forces."""
 
-_EVOLVING = ("ended", "torn", "begun", "relative", "free", "stands")
+_EVOLVING = ("ended", "torn", "begun", "relative", "free", "stands", "across_ended")
 """Arrays about particles that have broken off, and of what acted on them."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")

@@ -86,6 +86,11 @@ class DiskSystem(RecordedDisks):
         self.near_ties = NearTies(scene, self.contacts["body"]) if watches else None
 
     @property
+    def supply_is_plain(self) -> bool:  # type: ignore[override]  # a constant of other systems
+        """Whether no seams of unlike columns act, whose forces at rest do not cancel."""
+        return len(self.scene.seams) < 2
+
+    @property
     def contacts(self) -> dict[str, ContactList]:
         """The pairs of each part by name, empty if the material's law has no history."""
         return self.disks.contacts
@@ -205,11 +210,16 @@ class DiskSystem(RecordedDisks):
         return 0.0 if self.balance is None else self.balance.work(self.scene.layout.gather(u))
 
     def spring_shift(self, u: np.ndarray) -> float:
-        """Work (J) up to displacements (3, slots) of the balancing forces that shift springs and ties to rest."""
+        """Work (J) up to displacements (3, slots) of the balancing forces that shift springs and ties to rest.
+
+        Beside two columns also of those that balance the forces of their seams at rest, unlike at both sides, so that
+        these forces count as balanced, too.
+        """
         if self.balance is None:
             return 0.0
         moved = self.scene.layout.gather(u) - self.balance.datum
-        return float(np.sum(self.forces.shift(self.balance.datum) * moved))
+        shift = float(np.sum(self.forces.shift(self.balance.datum) * moved))
+        return shift - self.balance.work_across(moved) if len(self.scene.seams) > 1 else shift
 
     @property
     def balancing_force(self) -> np.ndarray | None:
