@@ -224,12 +224,11 @@ def stability(
 
     Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
 
-    With --strength the body settles under its weight: with strengths divided by F until it fails, the factor of safety;
-    and pushed by a horizontal acceleration until it fails, to both sides. Exit code 3 if it does not stand as it is.
+    With --strength the body settles with strengths divided by F until it fails, and is pushed sideways until it fails.
+
+    The sides of the static stage stay in the push. Ends with exit code 3 if the body does not stand as it is.
     """
     from dembound.cli.strength import measure_strength
-    from dembound.plot.stability import plot_stability
-    from dembound.studies.stability import measure
 
     of_step = {"--steps": steps, "--full": full or None, "--title": title, "--table": table}
     _refuse(of_step if strength else {"--tolerance": tolerance}, f"is {'not ' if strength else ''}for --strength")
@@ -240,6 +239,9 @@ def stability(
     if strength:
         measure_strength(load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path(STRENGTH))
         return
+    from dembound.plot.stability import plot_stability
+    from dembound.studies.stability import measure
+
     loaded = load_case(case, changes)
     found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line))
     out.print(_stability_overview(found, f"{loaded.name}: {words[0]}"))

@@ -10,7 +10,8 @@ which it stood, as slowly as all loads of a static stage (`disks.rest.loading`);
 by a jump of displacements, however it might end: more than `SHARE` of the disks (`trial.py`) are farther than `JUMP`
 diameters, and than `TIMES` the largest elastic displacement, from their places in the elastic state under the same
 loads, in which nothing opens, slides or breaks. Beyond half a diameter disks have other neighbours; the second limit is
-for soft ground, which settles by diameters; single disks that roll off a face are no failure.
+for soft ground, which settles by diameters. Fewer disks that fall or roll off are no failure, if all others are at rest
+by the force ratio of elastic bodies.
 """
 
 from __future__ import annotations
@@ -152,10 +153,8 @@ def measure(
     safety = Search("factor of safety", "1")
     safety.bisect(ground.weakened, FACTORS, tolerance)
     found = Strength([safety], ground.words)
-    if not found.holds:
-        ground.words.append("no yield acceleration: the body does not stand at full strength")
-    elif ground.refused:
-        ground.words.append(f"no yield acceleration: {ground.refused}")
+    if why_not := "the body does not stand at full strength" if not found.holds else ground.refused:
+        ground.words.append(f"no yield acceleration: {why_not}")
     else:
         for name, sign in (("to the right", 1.0), ("to the left", -1.0)):
             search = Search(f"yield acceleration {name}", "g")
@@ -199,6 +198,8 @@ class _Ground:
         try:
             settled = settle(scene, self._on_look, places)
         except StalledError as error:
+            if factor == 1.0:
+                self.refused = "single disks go on falling at full strength, so there is no state to push"
             return places.stalled(factor, 0, error)
         found = places.settled(factor, 0, settled)
         if factor == 1.0:
@@ -269,6 +270,6 @@ def _no_rest(searches: Sequence[Search]) -> Iterator[str]:
         last = next((each for each in search.tried if abs(each.value) == search.fails), None)
         if last is not None and last.ended == NO_REST and last.left > 0 and not last.has_jumped:
             yield (
-                f"{search.name}: at {last.value:.4g} {last.left:,} disks have left their places and find no rest, and "
-                "the body may stand without them; do they fall out of the scene?"
+                f"{search.name}: no rest at {last.value:.4g}, but only {last.left:,} disks have left their places; the "
+                "body may stand without these"
             )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.casefile.disks.static import RATIO
 from dembound.disks.rest.settled import Settled
 from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.kind import Stages, StalledError
 from dembound.motion.simulation import Simulation
 from dembound.motion.state import Arrays
@@ -20,8 +22,8 @@ disks above which these are a failure."""
 LOOKS = 100
 """Steps between two looks at the displacements."""
 
-REST, NO_REST, MOVES = "at rest", "no rest", "moves"
-"""What ended a trial: equilibrium, none within its steps, or the jump of displacements."""
+REST, FALL, NO_REST, MOVES = "at rest", "few fall", "no rest", "moves"
+"""What ended a trial: equilibrium, that of all but a few disks which fall, none, or the jump of displacements."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Tried:
 
     Attributes
     ----------
-    value : F, or horizontal acceleration in g, positive to the right. ended : one of `REST`, `NO_REST` and `MOVES`.
+    value : F, or horizontal acceleration in g, positive to the right. ended : `REST`, `FALL`, `NO_REST` or `MOVES`.
     moved : m, largest distance of a disk from its elastic place, nan if a stage before the last one failed; left :
     number of disks that have left theirs; has_jumped : whether these are too many. broken : bonds that broke since the
     body was built. steps : of the last stage.
@@ -47,7 +49,7 @@ class Tried:
     @property
     def stands(self) -> bool:
         """Whether the body stands."""
-        return self.ended == REST
+        return self.ended in (REST, FALL)
 
 
 class LeftError(StalledError):
@@ -92,9 +94,19 @@ class Places(Stages):
         state, broken = error.run.state, broken + self._before + len(error.cracks)
         if not self._last:
             return Tried(value, NO_REST, np.nan, 0, False, broken, state.step)
-        return self._tried(
-            value, MOVES if isinstance(error, LeftError) else NO_REST, state.displacement, broken, state.step
-        )
+        found = self._tried(value, NO_REST, state.displacement, broken, state.step)
+        if isinstance(error, LeftError):
+            return replace(found, ended=MOVES)
+        rests = found.left > 0 and not found.has_jumped and self._ratio_of_others(error) <= RATIO
+        return replace(found, ended=FALL) if rests else found
+
+    def _ratio_of_others(self, error: StalledError) -> float:
+        """Force ratio of the disks that have not left their places, as `StaticScene.force_ratio` is of all."""
+        stays = self.moved(error.run.state.displacement) <= self._limit
+        assert isinstance(error.run.system, DiskSystem)
+        pair = np.concatenate([np.hypot(*each.arrays.force[:2]) for each in error.run.system.contacts.values()])
+        unbalanced = np.hypot(*error.unbalanced[self._body].T)
+        return float(unbalanced[stays].mean() / pair[pair > 0.0].mean()) if pair.any() else np.inf
 
     def settled(self, value: float, broken: int, settled: Settled) -> Tried:
         """The end of a trial that came to rest; broken : bonds before it."""

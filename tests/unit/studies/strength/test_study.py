@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from small_cases import PUSHED, SOIL, problems_in, small
 
+from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.studies.strength.study import Search, measure, require_strengths, weaker
-from dembound.studies.strength.trial import MOVES, NO_REST, REST, Tried
+from dembound.studies.strength.trial import FALL, MOVES, NO_REST, REST, Places, Tried
 
 CUT = {
     "packing": {"pattern": "B", "size": [12.0, 6.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 6.0]},
@@ -64,6 +65,22 @@ def test_what_cannot_fail_or_has_no_weight_is_refused() -> None:
         measure(small(CUT), 0.0)
 
 
+def test_more_than_a_hundredth_of_the_disks_half_a_diameter_from_their_elastic_places_are_a_failure() -> None:
+    scene = build(small(CUT))
+    count, diameter = scene.disk_count, scene.ground.brick.mean_diameter
+    few, still = count // 100, np.zeros((2, count))
+    moved = np.zeros((3, count))
+    moved[1, :few] = -0.51 * diameter
+    assert not Places(scene, still).has_failed(moved)
+    moved[0, few] = 0.51 * diameter
+    assert Places(scene, still).has_failed(moved)
+    assert not Places(scene, moved[:2]).has_failed(moved)
+    soft = still.copy()
+    soft[1, -1] = -0.3 * diameter  # twice that is more than half a diameter
+    assert not Places(scene, soft).has_failed(moved)
+    assert Places(scene, soft).has_failed(1.2 * moved)
+
+
 @pytest.fixture(scope="module")
 def cut():
     """The strength of the cut, in coarse brackets."""
@@ -110,4 +127,18 @@ def test_a_body_that_nothing_holds_sideways_has_a_factor_alone() -> None:
     smooth = {"static.boundary.bottom": {"type": "roller"}, "static.boundary.left": None}
     found = measure(small(CUT, changes=smooth | {"static.boundary.right": None, "motion.held": ["rotation"]}), 0.5)
     assert len(found.searches) == 1
-    assert "static.boundary: nothing holds the body along x against load.push" in found.words[-1]
+    assert "static.boundary: nothing holds the body along x against load[2, push]" in found.words[-1]
+
+
+def test_one_disk_that_falls_out_of_the_scene_is_no_failure() -> None:
+    """The last one of the upper row, below which there is nothing: its contact with the row is without force."""
+    rows = {
+        "packing": {"pattern": "A", "size": [15.0, 2.0], "radius": 0.25},
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 1.0, "fric": 0.5}
+        | {"law": "linearpbond"},
+        "hole": [{"name": "gap", "type": "polygon", "points": [[14.5, 0.0], [15.0, 0.0], [15.0, 1.5], [14.5, 1.5]]}],
+    }
+    found = measure(small(CUT | rows, changes={"static.boundary": {"bottom": {"type": "fixed"}}}), 1.0)
+    first = found.searches[0].tried[0]
+    assert (first.ended, first.left, first.stands) == (FALL, 1, True)
+    assert found.words[-1].startswith("no yield acceleration: single disks go on falling")
