@@ -21,6 +21,7 @@ from dembound.cli.app import (
     Side,
     Threads,
     app,
+    ending_in,
     load_case,
     load_disks,
     prepare_computing,
@@ -179,6 +180,10 @@ def _simulated(shown: Sequence[Lattice]) -> list[Points]:
     return points
 
 
+STRENGTH = "strength.csv"
+"""Table of --strength by default."""
+
+
 @app.command("stability", rich_help_panel=MORE)
 def stability(
     case: OneCase,
@@ -192,7 +197,22 @@ def stability(
     full: Annotated[
         bool, typer.Option("--full", help="Use the whole scene of disks instead of fewer copies of its brick.")
     ] = False,
-    output: Annotated[Path, PICTURE] = Path("stability.png"),
+    strength: Annotated[
+        bool,
+        typer.Option("--strength", help="Measure how near the ground is to failure under its weight, not the step."),
+    ] = False,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="Picture to write (PNG), by default stability.png; of --strength the table (CSV), strength.csv.",
+            callback=ending_in(".png", ".csv"),
+        ),
+    ] = None,
     title: PictureTitle = None,
     table: CurveTable = None,
     changes: Settings = None,
@@ -203,11 +223,25 @@ def stability(
     Also checks whether the energy of noise grows at the case's own step.
 
     Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
+
+    With --strength the body settles with strengths divided by F until it fails, and is pushed sideways until it fails.
+
+    The sides of the static stage stay in the push. Ends with exit code 3 if the body does not stand as it is.
     """
+    from dembound.cli.strength import measure_strength
+
+    of_step = {"--steps": steps, "--full": full or None, "--title": title, "--table": table}
+    _refuse(of_step if strength else {"--tolerance": tolerance}, f"is {'not ' if strength else ''}for --strength")
+    ending = ".csv" if strength else ".png"
+    if output is not None and output.suffix.lower() != ending:
+        raise CaseError([f"--output: is {output}, must end in {ending}"])
+    prepare_computing(threads)
+    if strength:
+        measure_strength(load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path(STRENGTH))
+        return
     from dembound.plot.stability import plot_stability
     from dembound.studies.stability import measure
 
-    prepare_computing(threads)
     loaded = load_case(case, changes)
     found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line))
     out.print(_stability_overview(found, f"{loaded.name}: {words[0]}"))
@@ -216,7 +250,7 @@ def stability(
         out.print(f"  {line}")
     short, long = _lines(found)
     figure = plot_stability(short, long, f"Noise in {loaded.name}: {words[0]}")
-    leave(figure, output, title, table)
+    leave(figure, output or Path("stability.png"), title, table)
     _fail_if_unstable(found)
 
 

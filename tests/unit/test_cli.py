@@ -18,6 +18,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 from rich.text import Text
+from small_cases import small
 
 from dembound import cli, starting
 from dembound.boundaries import SIDES
@@ -542,6 +543,58 @@ def test_stability_is_told_drawn_and_written_and_what_is_not_stable_ends_with_3(
     assert answer.code == 3
     assert "UNSTABLE" in answer.out
     assert answer.err.splitlines()[-1].startswith("elastic: not stable at the case's own step of 0.001 s; the largest")
+
+
+STANDS = {
+    "packing": {"pattern": "A", "size": [2.0, 1.5], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 1.0, "fric": 0.5, "law": "linearpbond"},
+    "motion": {"held": ["rotation"]},
+    "load": [{"name": "weight", "acceleration": [1.0, -9.81]}],
+    "static": {"boundary": {"bottom": {"type": "fixed"}}},
+    "run": {"duration": 0.1},
+}
+"""Three rows of disks that slide on each other at 0.5 g along x."""
+
+
+def test_strength_is_told_and_written_and_what_falls_ends_with_3(dembound, tmp_path) -> None:
+    path = tmp_path / "rows.toml"
+    path.write_text(small(STANDS).text)
+    answer = dembound("stability", path, "--strength", "--tolerance", 0.3)
+
+    assert answer.code == 0
+    *_, factor, right, left, wrote = answer.out.splitlines()
+    assert (wrote, files(tmp_path)) == ("wrote strength.csv", {"rows.toml", "strength.csv"})
+    for line, name, true in (
+        (factor, "factor of safety", 0.5 * 9.81),
+        (right, "yield acceleration to the right", 0.5 - 1.0 / 9.81),
+        (left, "yield acceleration to the left", 0.5 + 1.0 / 9.81),
+    ):
+        stands, fails = re.fullmatch(rf"{name}: \S+(?: g)? \((\S+) stands, (\S+) fails\)", line).groups()
+        assert float(stands) < true < float(fails)
+    head, *rows = csv.reader((tmp_path / "strength.csv").open(encoding="utf-8"))
+    table = [cells(line) for line in answer.out.splitlines() if line.startswith(("factor of safety ", "yield"))]
+    assert len(rows) == len([row for row in table if len(row) == 8])
+    assert {row[head.index("stands")] for row in rows} == {"yes", "no"}
+
+    answer = dembound("stability", path, "--strength", "--tolerance", 0.5, "--set", "material.fric=0.05")
+    assert answer.code == 3
+    assert answer.err.splitlines()[-1].endswith("does not stand under its weight")
+    assert "no yield acceleration: the body does not stand at full strength" in answer.out
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--strength", "--steps", 5], "--steps: is not for --strength"),
+        (["--strength", "--full", "--title", "x"], "--title: is not for --strength"),
+        (["--tolerance", 0.1], "--tolerance: is for --strength"),
+        (["--strength", "-o", "a.png"], "--output: is a.png, must end in .csv"),
+        (["-o", "a.csv"], "--output: is a.csv, must end in .png"),
+        (["--strength"], 'material.law: is "elastic", under which nothing breaks or slides'),
+    ],
+)
+def test_strength_refuses_what_it_has_no_use_for(dembound, written, options, said) -> None:
+    refused(dembound("stability", written(), *options), said)
 
 
 PLACED = ("gauge.txt", "--position", 0.6, "--length", 0.99)

@@ -188,6 +188,14 @@ def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | Non
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
 
+def settle_on(scene: DiskScene, start: Start, on_look: OnLook | None = None, stages: Stages | None = None) -> Settled:
+    """Bring a settled body to rest again, under loads other than before, whose difference is applied slowly.
+
+    start : of a body settled in an equal scene, which can be used only once. Raises the errors of `settle`.
+    """
+    return _settle(scene, lambda: start, _Stage("body", "the static stage", on_look, stages or Stages()))
+
+
 def require_stages(scene: DiskScene) -> None:
     """Raise the errors of building the scenes of a static stage, if the case has one."""
     if (static := scene.case.static) is None:

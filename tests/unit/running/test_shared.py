@@ -76,6 +76,28 @@ def test_a_stage_is_computed_once_for_all_that_need_it(tmp_path, monkeypatch) ->
         assert not (folder / "settled").exists()
 
 
+def test_a_stage_is_shared_by_all_records_and_factors(tmp_path) -> None:
+    """Of ground that breaks, beside a free field and beside a continuum, whose elements are given here."""
+    for name, frequency in (("a.txt", 5.0), ("b.txt", 15.0)):
+        time = 0.01 * np.arange(101)
+        np.savetxt(tmp_path / name, np.column_stack([time, np.sin(np.pi * time) ** 2 * np.sin(frequency * time)]))
+    weak = {"material.law": "linearpbond", "material.pb_ten": 1e6, "material.pb_coh": 1e6, "material.fric": 0.5}
+    for side in ("free_field", "outside"):
+        below = {"type": "outside" if side == "outside" else "viscous_input", "wave_s": "h"}
+        sides = {"boundary": {"left": {"type": side}, "right": {"type": side}, "bottom": below}}
+        tables = {"wave": {"h": {"type": "file", "path": "a.txt"}}, "monitor": [], "packing.size": [15.0, 10.0]}
+        tables |= {"outside": {"element": 5.0}} if side == "outside" else {}
+        case = dembound.change(replace(small(PUSHED), folder=tmp_path), SETTLED | weak | sides | tables)
+        shared = Shared(tmp_path / "settled")
+        found = set()
+        for other in ({}, {"wave.h.scale": 3.0}, {"wave.h.path": "b.txt"}):
+            planned = plan(dembound.change(case, other))
+            found.add(shared.stages(planned.kind.stage_keys(planned.stepped)))
+        assert len(found) == 1
+        stronger = plan(dembound.change(case, {"material.pb_ten": 2e6}))
+        assert shared.stages(stronger.kind.stage_keys(stronger.stepped)) not in found
+
+
 def test_others_wait_for_a_stage_unless_they_are_to_stop(tmp_path) -> None:
     shared = Shared(tmp_path / "settled")
     keys = {"packing": {"radius": 0.5}}

@@ -1,0 +1,1 @@
+"""How near ground is to failure under its weight: factor of safety and yield acceleration."""
