@@ -177,9 +177,22 @@ def build(case: DiskCase) -> DiskScene:
     if not later:
         return scene
     body, edges, kept = hollowed(case, ground.brick, body, edges, later, case.floors)
-    column = np.arange(scene.column_count)
-    kept = np.concatenate([column, len(column) + kept])
-    return replace(_scene(case, ground, body, edges, case.floors), before=scene, kept=kept)
+    after = _scene(case, ground, body, edges, case.floors)
+    columns = [_same_in(scene, after, seam) for seam in after.seams]
+    return replace(after, before=scene, kept=np.concatenate([*columns, scene.column_count + kept]))
+
+
+def _same_in(before: DiskScene, after: DiskScene, seam: Seam) -> np.ndarray:
+    """Disks (k,) of the column of a scene before an excavation that those of a column after it were."""
+    own = before.seams[min(after.seams.index(seam), len(before.seams) - 1)].disks
+    keys = [
+        each.assembly.tile[disks, 1].astype(np.int64) * len(before.ground.brick.radii)
+        + each.assembly.brick_particle[disks]
+        for each, disks in ((before, own), (after, seam.disks))
+    ]
+    order = np.argsort(keys[0])
+    found: np.ndarray = own.start + order[np.searchsorted(keys[0], keys[1], sorter=order)]
+    return found
 
 
 def _scene(
@@ -315,7 +328,7 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     static = case.static
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
-        if len(scene.seams) > 1:
+        if columns_stand_fast(scene):
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
@@ -328,6 +341,11 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     surface = None if scene.surface is None else level_at(scene.surface, scene.seams[number])
     intact = scene.intact is not None and bool(scene.intact[scene.seams[number].disks].all())
     return replace(alone_scene, surface=surface, all_intact=intact)
+
+
+def columns_stand_fast(scene: DiskScene) -> bool:
+    """Whether columns are fixed at rest where their body is on rollers: beside unlike ones, and of uneven packings."""
+    return len(scene.seams) > 1 or not scene.case.packing.is_lattice
 
 
 def standing_fast(table: Boundary) -> Boundary:

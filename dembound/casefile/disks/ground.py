@@ -165,6 +165,13 @@ def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
         f"as the ground is no half-space, with its surface {where}; end the holes inside the disks, with the surface "
         "at its height at both sides"
     )
+    packing, ground = tables["packing"], tables["ground"]
+    driven = [side for side, table in tables["boundary"].items() if table and table.is_outside and table.waves]
+    if driven and "bottom" in packing.gaps(ground.box(packing)):
+        yield (
+            f"packing.origin: the ground goes on below the disks, which under waves from boundary.{driven[0]} must "
+            f"reach its lower side, {no_half_space}"
+        )
     if tables["incident"]:
         yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
     for place, load in numbered("load", tables["load"]):

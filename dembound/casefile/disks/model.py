@@ -215,12 +215,17 @@ class DiskCase(Case):
 
         That of the disks where the surface has one height.
         """
+        left, _, right, _ = self.packing.box
+        return 0.5 * (left + self.level["left"] + right - self.level["right"])
+
+    @cached_property
+    def level(self) -> dict[str, float]:
+        """Length (m) from the left and the right side inwards over which the surface is level, by side."""
         box, diameter = self.packing.box, 2.0 * self.packing.radius
-        level = {
+        return {
             side: self.floors[side].width if side in self.floors else level_beside(self.holes, box, side, diameter)
             for side in ("left", "right")
         }
-        return 0.5 * (box[0] + level["left"] + box[2] - level["right"])
 
     def is_above_surface(self, hole: Hole) -> bool:
         """Whether a hole is what lies above the ground at a side where that is lower than the box of disks."""

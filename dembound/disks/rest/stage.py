@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.disks.body import COLUMNS
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
@@ -244,9 +245,8 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
     assert scene.kept is not None
     contacts = contact_lists(scene) if before.contacts else {}
     for name, pairs in contacts.items():
-        there = before.contacts[name]
-        kept = scene.kept[(scene.kept >= there.nodes.start) & (scene.kept < there.nodes.stop)] - there.nodes.start
-        pairs.take_over_subset(there, kept)
+        there = before.contacts[name] if name in before.contacts else before.contacts[COLUMNS[0]]
+        pairs.take_over_subset(there, scene.kept[scene.parts[name]] - there.nodes.start)
     return Start(before.displacement[:, scene.kept], contacts, before.has_history)
 
 

@@ -11,7 +11,7 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.material.constants import limits_of
-from dembound.disks.scene import DiskScene, standing_fast
+from dembound.disks.scene import DiskScene, columns_stand_fast, standing_fast
 from dembound.disks.side_forces import forces_at_rest, side_forces
 from dembound.disks.sides import media_of
 from dembound.disks.stepping.balance import mean_rotations
@@ -104,7 +104,7 @@ class StaticScene:
             if side in scene.edges:
                 for part, medium in media_of(scene, side):
                     _support(scene, table, part, medium, builder)
-                if len(scene.seams) > 1:
+                if scene.seams and columns_stand_fast(scene):
                     columns = scene.edges[side].only(scene.edges[side].nodes < scene.column_count, 0.0)
                     _hold_too(standing_fast(table), table, columns, builder)
         self.static = static

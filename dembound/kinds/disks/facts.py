@@ -21,6 +21,7 @@ from dembound.formulas.disks.reflections import sent_back
 from dembound.kinds.disks.continuum_facts import continuum_facts
 from dembound.kinds.disks.ground import ground_facts, particles_per
 from dembound.kinds.disks.incident_wave import incident_facts
+from dembound.kinds.disks.slopes import slope_facts
 from dembound.kinds.disks.summary import describe_side
 from dembound.kinds.disks.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.words import Entries, in_one_unit, percent, with_unit
@@ -43,6 +44,7 @@ def disk_facts(scene: DiskScene) -> Entries:
     yield from _hole_facts(case)
     yield from _static_facts(scene)
     yield from intact_facts(scene)
+    yield from slope_facts(scene)
     if scene.outside is not None:
         yield from continuum_facts(scene)
     if scene.ground_waves is not None:
@@ -76,6 +78,8 @@ def _monitor_facts(scene: DiskScene) -> Entries:
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")
         column = "the ground without the body" if not scene.seams else f"in the free-field column {twin}"
+        if len(scene.seams) > 1 and twin is not None:
+            column = f"in the column of the {'left' if twin < scene.seams[0].disks.stop else 'right'} side {twin}"
         beside = "" if twin is None else f", {column}"
         yield f"monitor {name}", f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
 

@@ -1,11 +1,14 @@
 """Meshes: nodes, elements and layers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from meshes import ORDER, below, buried, stepped, uneven
 
 from dembound.continuum.axis import Rule
 from dembound.continuum.edges import edge_lengths, free_edges, traction_in
+from dembound.continuum.interpolation import located
 from dembound.continuum.mesh import NONE, Around, Mesh
 from dembound.table import EVERYWHERE
 
@@ -242,3 +245,28 @@ def test_mirror_planes_and_periodic_sides_are_no_surface() -> None:
     around = traction_in(Mesh.uniform(**plain, periodic=(True, False)), EVERYWHERE)
     assert around.length == pytest.approx(6.0, rel=1e-12)
     assert around.share.sum() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_slit_doubles_the_nodes_below_the_corner_of_the_box() -> None:
+    """Elements right of it have the copies, also that above the corner; all others, and their areas, are the same."""
+    plain = Mesh.around(
+        (0.0, 0.0, 4.0, 2.0), (1.0, 1.0), 3, margin=Around(1, 1, 1), layer=Around(1, 1, 2), levels=(2, 1)
+    )
+    mesh = replace(plain, slit=True)
+    own, copies = mesh.doubled
+
+    assert mesh.count == plain.count + len(own) == plain.count + 3 * 3 + 1
+    assert np.array_equal(mesh.positions[own], mesh.positions[copies])
+    np.testing.assert_allclose(mesh.positions[own, 0], 4.0)
+    np.testing.assert_allclose(mesh.positions[own[[0, -1]], 1], [-3.0, 0.0])
+    right = mesh.rectangles[:, 0] > 3.9
+    assert np.array_equal(mesh.is_right, right)
+    assert not np.isin(mesh.nodes[right], own).any()
+    assert not np.isin(mesh.nodes[~right], copies).any()
+    where = np.append(np.arange(plain.count), own)  # the node of each in the mesh without a slit
+    assert np.array_equal(where[mesh.nodes], plain.nodes)
+    np.testing.assert_allclose(np.bincount(where, mesh.areas), plain.areas, rtol=1e-14)
+    # places just left and right of it, which lie in elements of other sides where that is asked for
+    places = np.array([[3.9, -0.5], [4.1, -0.5], [4.1, -0.5]])
+    found, _ = located(mesh, places, np.array([False, True, False]))
+    assert mesh.is_right[found].tolist() == [False, True, False]
