@@ -27,6 +27,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static
 from dembound.casefile.tables import ENDING
+from dembound.continuum import sizing
 from dembound.disks.material.case_material import nominal_moduli
 from dembound.disks.material.layered import materials_in
 from dembound.disks.material.packed_material import PackedMaterial
@@ -44,16 +45,25 @@ CELLS = 4
 LAYER = 2.5
 """Smallest number of particles across a layer: at least `THINNEST`, after sides have moved."""
 
+SPARE = 1.1
+"""Distance of two heights of the surface over the smallest useful element, as whole disks move the heights."""
+
 TRIED = 60
 """Numbers of columns that are tried for the one whose rows fit the height best."""
 
 
 def largest_diameter(case: DiskCase, shortest: float) -> float:
-    """Largest diameter (m) of disks: at most `shortest`, `CELLS` across holes and between sides, `LAYER` a layer."""
+    """Largest diameter (m) of disks: at most `shortest`, `CELLS` across holes and between sides, `LAYER` a layer.
+
+    Beside lower ground beyond a continuum its elements fit between the heights.
+    """
     holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.holes]
     across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
     layers = [(high - low) / LAYER for high, low in pairwise([case.box[3], *case.joints])]
-    return min([shortest, *holes, *across, *layers])
+    heights = sorted({case.packing.box[1], case.packing.box[3], *(floor.height for floor in case.floors.values())})
+    element = SPARE * sizing.least_size(case.outside.order, 1.0, is_random=False)
+    steps = [(high - low) / element for low, high in pairwise(heights)] if case.outside_sides and case.floors else []
+    return min([shortest, *holes, *across, *layers, *steps])
 
 
 @dataclass(frozen=True)

@@ -173,12 +173,18 @@ def _floors_beyond(case: DiskCase, larger: Box) -> list[Hole]:
             }
         )
         for stage, side, floor in each
-        if case.side(side).is_outside and ends[side][0] < ends[side][1]
+        if _goes_on_level(case, side) and ends[side][0] < ends[side][1]
     ]
 
 
+def _goes_on_level(case: DiskCase, side: str) -> bool:
+    """Whether the ground beyond a side with a floor has the height of this floor."""
+    table = case.side(side)
+    return table.is_outside or table.needs_column
+
+
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
-    """Raise CaseError for holes that reach beyond a side that moves, but for level floors beside a continuum."""
+    """Raise CaseError for holes that reach beyond a side that moves, but for level ground that goes on there."""
     problems = [
         f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
         "scene cannot be extended there"
@@ -186,7 +192,7 @@ def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
         for side in SIDES
         if bricks.get(side, 0)
         and _reaches(hole.box, side, plane_of(side, case.packing.box))
-        and not (side in case.floors and case.side(side).is_outside)
+        and not (_goes_on_level(case, side) and (side in case.floors or case.is_above_surface(hole)))
     ]
     if problems:
         raise CaseError(problems, case.name)
