@@ -155,6 +155,9 @@ def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
     return lowered(floors(holes, packing, ground, boundary), boundary)
 
 
+UPWARDS = "boundary.bottom the wave, which then rises straight up"
+
+
 def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Tables that need a half-space as the ground, where the ground beyond a side is lower."""
     lower = lowered_in(tables)
@@ -169,11 +172,11 @@ def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     driven = [side for side, table in tables["boundary"].items() if table and table.is_outside and table.waves]
     if driven and "bottom" in packing.gaps(ground.box(packing)):
         yield (
-            f"packing.origin: the ground goes on below the disks, which under waves from boundary.{driven[0]} must "
-            f"reach its lower side, {no_half_space}"
+            f"packing.origin: the ground goes on below the disks; under waves from boundary.{driven[0]}, with its "
+            f"surface {where}, they must reach its lower side; make packing.size higher"
         )
     if tables["incident"]:
-        yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
+        yield f"incident: what the surface sends back of the wave is not known, {no_half_space}, or give {UPWARDS}"
     for place, load in numbered("load", tables["load"]):
         if load.is_everywhere and (load.wave is not None or not tables["static"]):
             yield f"{place}: acts on all disks, which needs a [static] stage and no wave, {no_half_space}"

@@ -72,7 +72,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
         if ground.points:
-            yield from surface_problems(ground.points, packing)
+            yield from surface_problems(ground.points, packing, tables["boundary"])
         yield from ground_problems(ground, packing, tables["boundary"])
         for key in ("load", "monitor"):
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])

@@ -1,22 +1,26 @@
 """The free surface of the ground as a line of points, in a case or a file, and what is above it."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from dembound.boundaries.boundary import Boundary
 from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Packing
 from dembound.table import Box
 from dembound.waves.file_wave import columns_in, header_of, read_text
 
+LEVEL = 4.0
+"""Least length, in diameters, over which the surface is level at a side of the disks."""
+
 ABOVE = "surface"
 """Name of what is above the surface of the ground, among the holes."""
 
 
-def surface_problems(points: Points, packing: Packing) -> Iterator[str]:
-    """Check the points of a surface against the box of disks."""
+def surface_problems(points: Points, packing: Packing, boundaries: Mapping[str, Boundary | None]) -> Iterator[str]:
+    """Check the points of a surface against the box of disks and its sides; an invalid side is None."""
     left, bottom, right, top = packing.box
     near = TYPED * packing.span
     if points[0][0] > left + near or points[-1][0] < right - near:
@@ -24,6 +28,8 @@ def surface_problems(points: Points, packing: Packing) -> Iterator[str]:
             f"ground.surface: goes from x = {points[0][0]:.10g} to {points[-1][0]:.10g} m, must reach over the disks, "
             f"{left:.10g} to {right:.10g} m"
         )
+    goes_on = [side for side, table in boundaries.items() if table and (table.is_outside or table.needs_column)]
+    yield from _uneven_ends(points, packing, goes_on)
     inside = [y for x, y in points if left - near <= x <= right + near]
     if max(inside, default=bottom) > top + near:
         yield (
@@ -33,6 +39,28 @@ def surface_problems(points: Points, packing: Packing) -> Iterator[str]:
     if min(inside, default=top) <= bottom + near:
         low = f"is as low as {min(inside):.10g} m"
         yield f"ground.surface: {low}, must be above the lower side of the disks, y = {bottom:.10g} m"
+
+
+def _uneven_ends(points: Points, packing: Packing, sides: Collection[str]) -> Iterator[str]:
+    """Some sides of the disks beside which a surface is not level within half a diameter over `LEVEL` diameters."""
+    left, _, right, _ = packing.box
+    diameter = 2.0 * packing.radius
+    for side, x, end in (("left", left, left + LEVEL * diameter), ("right", right, right - LEVEL * diameter)):
+        low, high = sorted((x, end))
+        inside = [y for at, y in points if low < at < high] + [_height(points, low), _height(points, high)]
+        if side in sides and max(inside) - min(inside) > 0.5 * diameter:
+            yield (
+                f"ground.surface: goes from y = {min(inside):.6g} to {max(inside):.6g} m beside boundary.{side}, "
+                f"beyond which it is level; must be level within half a diameter over {LEVEL * diameter:.4g} m there"
+            )
+
+
+def _height(points: Points, x: float) -> float:
+    """Height y (m) of a surface at x, m."""
+    for (before, low), (after, high) in pairwise(points):
+        if before <= x < after:
+            return low + (x - before) / (after - before) * (high - low)
+    return points[0][1] if x < points[0][0] else points[-1][1]
 
 
 def require_surface(points: Points) -> None:

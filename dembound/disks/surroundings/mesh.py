@@ -197,7 +197,8 @@ class Outline(NamedTuple):
         """
         size = ElementSizes.of(case, ground, body, sides, periodic)
         rim = Rim.of(case, ground, body, sides, size, floors)
-        _refuse_low(rim, min(least_element(case, ground.brick.mean_diameter), case.outside.element or np.inf))
+        key = "ground.surface" if case.ground.points else "hole"
+        _refuse_low(key, rim, min(least_element(case, ground.brick.mean_diameter), case.outside.element or np.inf))
         mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
         mesh = mesh_of(
             size.settings,
@@ -289,8 +290,11 @@ def _refuse_thin(gap: float, least: float) -> None:
         )
 
 
-def _refuse_low(rim: Rim, least: float) -> None:
-    """Raise CaseError for ground lower beyond a side if no useful element (m) fits between its heights."""
+def _refuse_low(key: str, rim: Rim, least: float) -> None:
+    """Raise CaseError for ground lower beyond a side if no useful element (m) fits between its heights.
+
+    key : that gives them, in messages.
+    """
     if not rim.levels:
         return
     surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
@@ -304,7 +308,7 @@ def _refuse_low(rim: Rim, least: float) -> None:
         if WHOLE * (rim.box[3] - rim.box[1]) < apart < least:
             raise CaseError(
                 [
-                    f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
+                    f"{key}: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
                     f"{'as high, or ' if low in surfaces else ''}{least_is}"
                 ]
             )

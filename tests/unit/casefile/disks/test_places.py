@@ -4,7 +4,7 @@ import pytest
 from small_cases import BODY, GROUND, PUSHED, Tables, around, problems_in, problems_of, rows, small
 
 from dembound.casefile import Case
-from dembound.casefile.disks.ground import reach
+from dembound.casefile.disks.ground import UPWARDS, reach
 from dembound.kinds import loads
 
 TAP = '[wave.tap]\ntype = "cubic_spline"\namplitude = 1.0\nperiod = 0.05\n'
@@ -188,7 +188,7 @@ def test_beside_a_floor_waves_rise_and_loads_on_all_disks_need_a_stage() -> None
     waved = {"load": [WEIGHT["load"][0] | {"wave": "w"}]} | STAGE
     oblique = {"incident": {"type": "sv", "angle": 10.0, "wave": "w"}}
     said = "incident: what the surface sends back of the wave is not known"
-    assert problems_in(lambda: sloped(oblique)) == [f"{said}, {WHY}"]
+    assert problems_in(lambda: sloped(oblique)) == [f"{said}, {WHY}, or give {UPWARDS}"]
     assert sloped({}).column_sides == ()
     assert sloped({"boundary.bottom.wave_p": "w"}).column_sides == ("left", "right", "bottom")
     assert line in problems_in(lambda: sloped(WEIGHT))

@@ -60,6 +60,14 @@ def test_mistakes_have_a_line_each(tmp_path: Path) -> None:
     ):
         (found,) = problems_in(lambda points=points: ground(**{"ground.surface": points}))
         assert found.startswith(line)
+    beside = {"ground.surface": [[0.0, 6.0], [1.0, 6.0], [5.0, 2.0], [8.0, 2.0], [10.0, 1.0]]}
+    beyond = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right")}
+    assert problems_in(lambda: ground(**beside)) == []
+    assert problems_in(lambda: ground(**beside, **beyond)) == [
+        f"ground.surface: goes from y = {low:g} to {high:g} m beside boundary.{side}, beyond which it is level; "
+        "must be level within half a diameter over 4 m there"
+        for side, low, high in (("left", 3.0, 6.0), ("right", 1.0, 2.0))
+    ]
     for text, line in (
         ("0,6\n10,six\n", "is not two columns of numbers"),
         ("0,6,1\n10,2,1\n", "has 3 columns, must have two, x and y in m"),
