@@ -110,7 +110,7 @@ def by_disks() -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sections", nargs="*", help="sides, disks; by default both")
     for section in parser.parse_args().sections or ("sides", "disks"):
         {"sides": by_sides, "disks": by_disks}[section]()

@@ -233,6 +233,13 @@ class SupportBuilder:
                     self._append(nodes[chosen], each, first + chosen, 1.0)
         self.side = present
 
+    def add_motion(self, nodes: np.ndarray, component: int, velocities: Signals) -> None:
+        """Prescribe velocities with a signal each of one component of nodes (k,)."""
+        first = len(self._signals)
+        self._signals += [OneOf(velocities, number) for number in range(velocities.count)]
+        if component not in self.held:
+            self._append(nodes, component, first + np.arange(len(nodes)), 1.0, prescribed=True)
+
     def add_power(self, side: str, power: Signal) -> None:
         """Add the power (W) of waves that enter through a side by forces only, for the side's energies."""
         self._power[side] = self._number_of_signal(power)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from dembound.continuum.interpolation import interpolation, slopes
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import INDEX
 from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.surroundings.ground_waves import UnlikeWaves
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
 from dembound.motion.scene import Between
@@ -84,10 +86,12 @@ def monitors_of(
             nodes[name] = outside.first + int(nearest(outside.body.mesh.positions, place[None])[0])
     if waves is not None:
         for name, disk in disks.items():
-            moving = _moving(waves, ground, *disk)
             if name in between:
-                between[name] = replace(between[name], known=moving)
-            between[f"{name}{FREE_FIELD}"] = _in_column(disk[0], twins.get(name), moving)
+                between[name] = replace(between[name], known=_moving(waves, ground, *disk))
+            beside = "right" if disk[0][0] > case.middle else "left"
+            between[f"{name}{FREE_FIELD}"] = _in_column(
+                disk[0], twins.get(name), _moving(waves, ground, *disk, beside=beside)
+            )
         twins = nodes | twins
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between
 
@@ -96,12 +100,20 @@ Moving = Callable[[np.ndarray], np.ndarray]
 """Displacement and velocity (s, 6) at times (s,) s."""
 
 
-def _moving(waves: Undisturbed, ground: PackedMaterial, place: np.ndarray, kind: int) -> Moving:
-    """The motion in the undisturbed ground of a disk of the brick, `kind`, at a place (2,) m."""
+def _moving(
+    waves: Undisturbed, ground: PackedMaterial, place: np.ndarray, kind: int, beside: str | None = None
+) -> Moving:
+    """The motion in the undisturbed ground of a disk of the brick, `kind`, at a place (2,) m.
+
+    beside : the side whose ground it is, where it is not as high at both; None: that of the place.
+    """
     corrector = np.moveaxis(ground.at(float(place[1])).continuum.corrector[:, [kind]], 1, 2)
 
     def motion(times: np.ndarray) -> np.ndarray:
-        return np.hstack([waves.motion(of, times, place[None], corrector)[:, 0] for of in ("displacement", "velocity")])
+        moved = waves.motion
+        if isinstance(waves, UnlikeWaves) and beside is not None:
+            moved = partial(waves.beside, beside)
+        return np.hstack([moved(of, times, place[None], corrector)[:, 0] for of in ("displacement", "velocity")])
 
     return motion
 

@@ -212,7 +212,8 @@ def _scene(
     standing = _standing(case, ground, body, floors)
     outline = None
     if beyond:
-        outline = Outline.of(case, around, body, beyond, case.periodic, floors, slit=len(standing) > 1)
+        slit = len(standing) > 1 or (case.incident is not None and bool(floors))
+        outline = Outline.of(case, around, body, beyond, case.periodic, floors, slit=slit)
     if standing:
         left, bottom, right, _ = case.box
         if outline is not None:

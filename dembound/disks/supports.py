@@ -13,9 +13,10 @@ from dembound.disks.pressure import forces_on_sides, pressure_on
 from dembound.disks.sides import ENDS_OF_COLUMNS, media_of
 from dembound.disks.stepping.scene_parts import disks_on_foot
 from dembound.disks.surroundings.continuum import Surroundings
-from dembound.disks.surroundings.ground_waves import GroundWaves, rising_waves
+from dembound.disks.surroundings.ground_waves import GroundWaves, UnlikeWaves, rising_waves
 from dembound.disks.surroundings.incident import let_in, let_in_below, power_through
 from dembound.disks.surroundings.layered_waves import LayeredWaves, rising_in_layers
+from dembound.disks.surroundings.oblique_jump import let_jump
 from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
 from dembound.places import is_within, nearest
@@ -132,6 +133,8 @@ def supports_of(scene: DiskBody, waves: Waves) -> Supports:
         _let_in_below(scene, (x, y), builder)
     if scene.outside is not None and scene.ground_waves is not None:
         let_in(scene.outside, scene.ground_waves, scene.positions, builder)
+        if isinstance(scene.ground_waves, UnlikeWaves):
+            let_jump(scene.outside, scene.ground_waves, case.run.duration, builder)
     return builder.table()
 
 

@@ -158,6 +158,22 @@ def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
 UPWARDS = "boundary.bottom the wave, which then rises straight up"
 
 
+def _oblique_beside(tables: Mapping[str, Any], where: str) -> Iterator[str]:
+    """What a wave at an angle cannot go with where the ground beyond a side is lower; where : in words."""
+    others = {
+        "layers": bool(tables["layer"]),
+        "quality_factor": any(
+            table and table.quality_factor is not None for table in (tables["material"], *tables["layer"])
+        ),
+        "a [static] stage": tables["static"] is not None,
+    }
+    for what in (name for name, there in others.items() if there):
+        yield (
+            f"incident: is not known together with {what} where the ground is not as high at both sides, with its "
+            f"surface {where}; leave one out, or give {UPWARDS}"
+        )
+
+
 def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Tables that need a half-space as the ground, where the ground beyond a side is lower."""
     lower = lowered_in(tables)
@@ -176,7 +192,7 @@ def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
             f"surface {where}, they must reach its lower side; make packing.size higher"
         )
     if tables["incident"]:
-        yield f"incident: what the surface sends back of the wave is not known, {no_half_space}, or give {UPWARDS}"
+        yield from _oblique_beside(tables, where)
     for place, load in numbered("load", tables["load"]):
         if load.is_everywhere and (load.wave is not None or not tables["static"]):
             yield f"{place}: acts on all disks, which needs a [static] stage and no wave, {no_half_space}"

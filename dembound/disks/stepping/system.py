@@ -66,7 +66,7 @@ class DiskSystem(RecordedDisks):
         self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
         if self._bearing is not None:
             ties.append(self._bearing)
-        if len(scene.feet) > 1 and scene.outside is not None and not settling:
+        if scene.outside is not None and scene.outside.body.mesh.slit and not settling:
             ties.append(JumpTie(scene.outside, scene.feet, scene.layout, time_step))
         super().__init__(
             scene,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,7 +48,7 @@ class Surroundings:
     each disk its twin in a free-field column, relative to which it is tied, of two columns in the first at the left and
     below and in the second at the right; none: tied by its own motion. rest : (3, n) m, m and rad, displacements of the
     scene's disks at which ties have no force; None: zero.
-    surface_mass : kg/m², of the skin on its upper edge.
+    surface_mass : kg/m², of the skin on its upper edge; level_masses : on that of lower ground, by side.
     """
 
     sides: tuple[str, ...]
@@ -61,6 +61,7 @@ class Surroundings:
     levels: Mapping[str, Level]
     twins: tuple[np.ndarray, ...] = ()
     surface_mass: float = 0.0
+    level_masses: Mapping[str, float] = field(default_factory=dict)
     rest: np.ndarray | None = None
 
     @property
@@ -111,6 +112,13 @@ class Surroundings:
         if mesh.layer.top:
             return None
         return float(mesh.origin[1] + mesh.size[1]), self.surface_mass
+
+    def surface_at(self, side: str) -> tuple[float, float]:
+        """Height y (m) and mass (kg/m²) of the free surface beyond the left or right side."""
+        if side in self.levels:
+            return self.levels[side].surface, self.level_masses[side]
+        assert self.free_surface is not None
+        return self.free_surface
 
     @property
     def _near(self) -> float:
@@ -272,9 +280,13 @@ def surroundings_of(
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     surface_mass = rim.massless.get("top", 0.0) * ground.at(rim.surface or rim.box[3]).density
+    level_masses = {
+        side: (level.mass_end - level.surface) * ground.at(level.surface).density for side, level in rim.levels.items()
+    }
     found = Surroundings(
-        sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twins, surface_mass
-    )
+        sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twins, surface_mass,
+        level_masses,
+    )  # fmt: skip
     if thin := [side for side in sides if len(found.tied_by_side[side]) == 0]:
         said = "has no disk that is not tied by another side; make the body two disks wide and high, or more"
         raise CaseError([f"boundary.{thin[0]}: {said}"])

@@ -93,6 +93,38 @@ class GroundWaves:
         return moved
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class UnlikeWaves(GroundWaves):
+    """The motion of undisturbed ground that is not as high at both sides; it is itself that at the left and below.
+
+    Attributes
+    ----------
+    right : the motion at the right. border : x (m) from which on it is that. tops : heights y (m) of the surface at the
+    left and right, above which the motion is that at the surface.
+    """
+
+    right: GroundWaves
+    border: float
+    tops: tuple[float, float]
+
+    def motion(self, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None) -> np.ndarray:
+        """Motion (k, d, 3) at places (d, 2) m, right of the border that of the right side, see `GroundWaves.motion`."""
+        return np.where(
+            (places[:, 0] > self.border)[:, None],
+            self.beside("right", of, times, places, corrector),
+            self.beside("left", of, times, places, corrector),
+        )
+
+    def beside(
+        self, side: str, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Motion (k, d, 3) at places (d, 2) m of the ground at one side, see `GroundWaves.motion`."""
+        left = GroundWaves(self.medium, self.waves, self.signals, self.grain)
+        ground, top = (left, self.tops[0]) if side == "left" else (self.right, self.tops[1])
+        lower = np.column_stack([places[:, 0], np.minimum(places[:, 1], top)])
+        return ground.motion(of, times, lower, corrector)
+
+
 def _gradient(wave: ElasticPlaneWave) -> np.ndarray:
     """(4,) gradients ∂u_a/∂b by their numbers in `homogenise.GRADIENTS`, per unit of −ġ."""
     gradient = np.zeros(4)
@@ -202,17 +234,30 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
     table = case.incident
     if table is None:
         return None
-    medium = outside.body.ground.only
-    wave = incident_in(case, medium)
-    waves = [wave]
-    if (surface := outside.free_surface) is not None:
-        if (reflected := reflected_waves(medium, wave, *surface)) is None:
-            raise CaseError([_beyond(medium, table)])
-        waves += reflected
-    signals = (case.wave[table.wave],) * len(waves)
-    found = GroundWaves(medium, tuple(waves), signals, ground.brick.mean_diameter)
+    medium, grain = outside.body.ground.only, ground.brick.mean_diameter
+    surfaces = [outside.free_surface]
+    if outside.levels:
+        surfaces = [outside.surface_at(side) for side in ("left", "right")]
+    each = [_below(case, medium, surface, grain) for surface in surfaces]
+    found = each[0]
+    if outside.levels:
+        tops = outside.surface_at("left")[0], outside.surface_at("right")[0]
+        border = outside.body.mesh.sides[1]
+        found = UnlikeWaves(medium, found.waves, found.signals, grain, right=each[1], border=border, tops=tops)
     must_not_be_there(case, found, outside)
     return found
+
+
+def _below(case: DiskCase, medium: Medium, surface: tuple[float, float] | None, grain: float) -> GroundWaves:
+    """The motion below a free surface (height, m; mass, kg/m²), None for none, under the incident wave of a case."""
+    table = case.incident
+    assert table is not None
+    waves = [incident_in(case, medium)]
+    if surface is not None:
+        if (reflected := reflected_waves(medium, waves[0], *surface)) is None:
+            raise CaseError([_beyond(medium, table)])
+        waves += reflected
+    return GroundWaves(medium, tuple(waves), (case.wave[table.wave],) * len(waves), grain)
 
 
 def incident_in(case: DiskCase, medium: Medium) -> ElasticPlaneWave:

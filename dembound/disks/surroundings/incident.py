@@ -36,7 +36,7 @@ from dembound.continuum.axis import Rule
 from dembound.continuum.medium import ElasticPlaneWave
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.cut_bonds import CutBonds
-from dembound.disks.surroundings.ground_waves import NearPlaces
+from dembound.disks.surroundings.ground_waves import GroundWaves, NearPlaces, UnlikeWaves
 from dembound.disks.surroundings.layered_waves import LayeredWaves, NearLayers, Undisturbed
 from dembound.disks.surroundings.oblique_layers import NearObliqueLayers, ObliqueLayers
 from dembound.disks.surroundings.wall import Wall
@@ -82,6 +82,12 @@ def parts_of(wall: Wall, ground: Undisturbed, positions: np.ndarray, first: int)
 
     positions : (n, 2) m of disks. first : number of the first node of the grid.
     """
+    if isinstance(ground, UnlikeWaves):
+        right = wall.bonds.side == SIDES.index("right")
+        left = GroundWaves(ground.medium, ground.waves, ground.signals, ground.grain)
+        for own, chosen in ((left, ~right), (ground.right, right)):
+            yield from parts_of(wall.only(np.flatnonzero(chosen)), own, positions, first)
+        return
     for element in wall.elements:
         yield _part_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions, first)
 
@@ -210,6 +216,8 @@ def power_through(
     """
     if isinstance(ground, LayeredWaves):
         return ground.power_through(side, edges, thickness)
+    if isinstance(ground, UnlikeWaves) and side == "right":
+        ground = ground.right
     number, axis = SIDES.index(side), normal_axis(side)
     if isinstance(ground, ObliqueLayers):
         span = (edges[number], edges[number]) if axis else (edges[2], edges[3])

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.continuum.mesh import Mesh
+from dembound.continuum.part import GridBody
 from dembound.damping import factors_of
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.kernels import jump  # noqa: F401  # it registers its tie
@@ -20,7 +22,8 @@ class JumpTie(Tie):
 
     Parameters
     ----------
-    outside : the continuum. feet : those below the columns, with the same rows. layout : the slots of
+    outside : the continuum. feet : those below the columns, with the same rows; none: rotations of the nodes carry the
+    rate of the jump, see oblique_jump.py. layout : the slots of
     all nodes of the scene. time_step : Δt in s.
     """
 
@@ -42,17 +45,18 @@ class JumpTie(Tie):
         mesh, count = body.mesh, body.mesh.order + 1
         assert mesh.box is not None
         own, copy = mesh.doubled
-        elements = np.flatnonzero((mesh.elements[:, 0] == mesh.box[2]) & (mesh.elements[:, 1] < mesh.box[1]))
+        elements = elements_on_slit(mesh)
         heights, layer = mesh.element_sizes[elements, 1], body.layer[elements]
         lines = mesh.order * mesh.elements[elements, 1][:, None] + np.arange(count)
-        q, profile = -np.minimum(mesh.axes[1].depth[lines], 0.0), body.profile("bottom")
+        q, profile = depths_on_slit(mesh)[lines], body.profile("bottom")
         decay, gain, delay = np.zeros((3, *q.shape))
         if profile is not None:
             decay, gain, delay = (of(q, self._time_step) for of in (profile.decay, profile.gain, profile.delay))
             absorbs = mesh.absorbs[elements, 1][:, None]
             decay, gain, delay = (np.where(absorbs, each, 0.0) for each in (decay, gain, delay))
         factors = factors_of(body.mechanisms or (None,), self._time_step)[layer if body.mechanisms else 0 * layer]
-        (left, left_share), (right, right_share) = map(_across, self._feet)
+        none = np.zeros((len(own), 0), dtype=np.int64), np.zeros(0)
+        (left, left_share), (right, right_share) = map(_across, self._feet) if self._feet else (none, none)
         return Jump(
             left=slot[left],
             right=slot[right],
@@ -63,6 +67,7 @@ class JumpTie(Tie):
             line=np.zeros(len(own), dtype=np.int64),
             copy_line=np.zeros(len(own), dtype=np.int64),
             first=int(np.count_nonzero(mesh.held[own])),
+            given=int(not self._feet),
             slope=2.0 / heights[:, None, None] * mesh.rule.derivative,
             weight=0.5 * body.thickness * heights[:, None] * mesh.rule.weights,
             moduli=np.stack([body.stepped_media[number].moduli for number in layer]),
@@ -96,6 +101,27 @@ class JumpTie(Tie):
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         for name, values in self.saved_arrays().items():
             values[:] = saved[name]
+
+
+def elements_on_slit(mesh: Mesh) -> np.ndarray:
+    """Elements (k,) right of a slit beside it, from the bottom."""
+    assert mesh.box is not None
+    return np.flatnonzero((mesh.elements[:, 0] == mesh.box[2]) & (mesh.elements[:, 1] < mesh.box[1]))
+
+
+def depths_on_slit(mesh: Mesh) -> np.ndarray:
+    """Depth (n,) of the nodes on a slit in the layer below, over its thickness, from the bottom."""
+    depth: np.ndarray = -np.minimum(mesh.axes[1].depth[: len(mesh.doubled[0])], 0.0)
+    return depth
+
+
+def weights_on_slit(body: GridBody) -> np.ndarray:
+    """(n,) m², of the quadrature along a slit times the thickness, for its nodes from the bottom."""
+    mesh = body.mesh
+    heights, weight = mesh.element_sizes[elements_on_slit(mesh), 1], np.zeros(len(mesh.doubled[0]))
+    places = mesh.order * np.arange(len(heights))[:, None] + np.arange(mesh.order + 1)
+    np.add.at(weight, places, 0.5 * body.thickness * heights[:, None] * mesh.rule.weights)
+    return weight
 
 
 def nodes_on_slit(outside: Surroundings | None) -> np.ndarray:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.surroundings.continuum import Surroundings
-from dembound.disks.surroundings.ground_waves import GroundMotion
+from dembound.disks.surroundings.ground_waves import GroundMotion, UnlikeWaves
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.motion.scene import Beside
 from dembound.packings.column import nearest_in_column
@@ -55,7 +55,8 @@ class RecordedContinuum(Beside):
 
         With a scattered motion, names with the prefix "scattered_" contain it, and names without the total motion.
         """
-        own = values[self.nodes]
+        own = values[self.nodes].copy()
+        own[:, 2] = 0.0  # elements do not rotate
         if not self._is_scattered:
             return {"": own}
         total = own.copy()
@@ -63,8 +64,19 @@ class RecordedContinuum(Beside):
             for there, ground, column in zip(self._beside, self._grounds, self._disks.columns, strict=True):
                 total += np.where(there[:, None], ground.at_heights(values[column.disks]), 0.0)
         if self._waves is not None:
-            total += self._waves.motion(of, np.array([time]), self._outside.body.mesh.positions)[0]
+            total += self._incoming(of, time)
         return {"": total, "scattered_": own}
+
+    def _incoming(self, of: str, time: float) -> np.ndarray:
+        """Motion (m, 3) of the ground without the body at the nodes, of either side where these are unlike."""
+        assert self._waves is not None
+        mesh, times = self._outside.body.mesh, np.array([time])
+        if not isinstance(self._waves, UnlikeWaves):
+            return self._waves.motion(of, times, mesh.positions)[0]
+        right = np.zeros(mesh.count, dtype=np.bool_)
+        right[mesh.nodes[mesh.is_right].ravel()] = True
+        left, other = (self._waves.beside(side, of, times, mesh.positions)[0] for side in ("left", "right"))
+        return np.where(right[:, None], other, left)
 
     @property
     def _is_scattered(self) -> bool:

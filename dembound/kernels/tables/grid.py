@@ -198,7 +198,8 @@ class Jump(NamedTuple):
     Of the nodes on the slit from the bottom up, n = E(N − 1) + 1: left, right : (n, a), (n, b) slots of nodes at
     these heights whose means, with weights left_share (a,) and right_share (b,), move by u_L and u_R less the incident
     motion. node, copy : (n,) slots of the nodes left and right of the slit; line, copy_line :
-    (n,) theirs in the support table. first : of the nodes that move.
+    (n,) theirs in the support table. first : of the nodes that move; given : 1 where D is known
+    otherwise, and dD/dt is the rotation of nodes, along x, and copies, along y.
     slope : (E, N, N) 1/m, d/dy at points. weight : (E, N) m², of the quadrature along y times the thickness. moduli :
     (E, 6) as of `Shape`. decay, gain, delay : (E, N), B, A and τ (s) along y as of `Absorber`. factors : (E, 2, K) e
     and g of K mechanisms. strain_memory : (E, N, 2) ψ of ∂_y D. memory : (E, N, 2, K) N. traction (n, 2) N, moved
@@ -214,6 +215,7 @@ class Jump(NamedTuple):
     line: np.ndarray
     copy_line: np.ndarray
     first: int
+    given: int
     slope: np.ndarray
     weight: np.ndarray
     moduli: np.ndarray
