@@ -272,7 +272,7 @@ def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
 
 
 def shown_names(names: Sequence[str]) -> list[str]:
-    """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` the first and the last."""
+    """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` its ends alone."""
     rows: dict[str, list[str]] = {}
     for name in names:
         numbered = NUMBERED.fullmatch(name)
