@@ -45,6 +45,7 @@ TOPICS = {
     "What artificial sides return": ("calibration", "beta_sweep", "sides", "side_reflection", "error_chart"),
     "Ground under waves from below": ("free_field", "earthquake", "resonance", "tunnel", "two_tunnels"),
     "Waves at an angle, and surfaces": ("oblique_sv", "canyon", "slope", "rayleigh"),
+    "Slopes and dams under waves from below": ("step_sv", "landslide_quake", "empty_dam"),
     "Sources and exact solutions": ("point_source", "lamb", "blast", "blast_cracks"),
     "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding"),
     "Bars: waves": ("dispersion", "interface", "matched_layer", "measured_pulse", "hopkinson"),
@@ -69,6 +70,9 @@ CHART = (WIDTH, 6.4)
 
 HEIGHTS = (3.3, 5.8)
 """Least and largest height of a figure of a picture, inches."""
+
+PANEL = 1.9
+"""Height for each of many panels below each other, inches, which may make a figure higher."""
 
 RUNS = ("build", "settle", "step", "record")
 """Sections of the entry `seconds` of a summary that are the time of a run, without imports, compiling and pictures."""
@@ -150,7 +154,9 @@ def fitted(figure: Figure) -> np.ndarray:
     """The pixels (rows, columns, 3) of a figure in the common width, laid out again for it; a chart is scaled."""
     width, height = figure.get_size_inches()
     if figure.legends or figure.get_supylabel():
-        figure.set_size_inches(WIDTH, float(np.clip(height * max(WIDTH / width, 0.75) + 0.4, *HEIGHTS)))
+        rows = len({round(panel.get_position().y0, 2) for panel in figure.axes})
+        most = max(HEIGHTS[1], PANEL * rows)
+        figure.set_size_inches(WIDTH, float(np.clip(height * max(WIDTH / width, 0.75) + 0.4, HEIGHTS[0], most)))
         figure.suptitle(figure.get_suptitle(), fontsize=9)
     if figure.legends:
         figure.legends[0].remove()

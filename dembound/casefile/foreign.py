@@ -9,6 +9,9 @@ _LAWS = " or ".join(f'"{name}"' for name in LAWS)
 _MORE = "; see docs: start/from_pfc"
 """Reference to the page with more information, at the end of a line."""
 
+_WATER = "; see docs: tasks/slopes"
+"""Reference to the page that says what works instead."""
+
 _EMOD = "write emod, Pa: the normal stiffness of a contact is k_n = emod, N/m for each metre of thickness"
 _PB_EMOD = "write pb_emod, Pa: a bond has pb_kn = pb_emod/(R1 + R2), Pa/m"
 _WIDTHS = "write radius, the mean one, and radius_ratio, the largest over the smallest"
@@ -21,6 +24,8 @@ _DAMP = f"write damp, which is for bringing bodies to rest: for waves leave it 0
 _BAR_DAMP = "write attenuation, 1/m: a wave fades by exp(−αx)"
 _WEIGHT = f"give [[load]] an acceleration, such as [0.0, -9.81] m/s², and [static] to settle under it{_MORE}"
 _IN_SITU = f"[static] has stress = [sxx, syy, sxy], Pa, tension positive: it replaces walls with a servo{_MORE}"
+_DRY = f"there is none: the ground is dry, without a water table, pore pressure or flow{_WATER}"
+_EMPTY = f"there is none: no water stands on the ground, a dam is empty{_WATER}"
 _VELOCITY = "give wave_p (along the normal) or wave_s (across it) the name of a [wave.NAME]"
 
 Advice = tuple[tuple[str, str], ...]
@@ -187,7 +192,12 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("pattern", 'pattern "B" or "C" has bond_gap, m: gaps up to it are bonded'),
     ),
     ("clump", "clumps", "rblock", "rblocks"): (("material", f"there is none: particles are disks{_MORE}"),),
-    ("water", "fluid", "pore_pressure", "pore", "thermal", "temperature"): (("", "there is none: the body is dry"),),
+    (
+        *("water", "fluid", "groundwater", "water_table", "water_level", "water_density", "phreatic", "phreatic_line"),
+        *("phreatic_surface", "pore", "pore_pressure", "pp", "saturation", "seepage", "permeability", "undrained"),
+    ): (("", _DRY),),
+    ("reservoir", "reservoir_level", "upstream_level", "tailwater"): (("", _EMPTY),),
+    ("thermal", "temperature"): (("", "there is none: the body has no temperature"),),
     ("dfn", "joint", "joints", "fracture", "fractures", "smooth_joint", "crack", "cracks"): (
         (
             "material",

@@ -124,9 +124,8 @@ def _is_open(holes: Sequence[Hole], x: np.ndarray | float, y: np.ndarray | float
 def surface_below(holes: Sequence[Hole], box: Box, along: np.ndarray, diameter: float) -> np.ndarray:
     """Heights y (k,) m of the outline of the uppermost ground in a box at x (k,) m; nan where holes leave none.
 
-    box : left, bottom, right, top, m. diameter : mean diameter of the disks, m. Ground that reaches a height half a
-    diameter below the top has the height of the top; strips of less than half a diameter may be missed. The heights are
-    those of the solid side of the outline, to the last bits.
+    box : left, bottom, right, top, m. diameter : mean diameter of the disks, m. Strips of less than half a diameter may
+    be missed. The heights are those of the solid side of the outline, to the last bits.
     """
     bottom, top = box[1], box[3]
     heights = np.full(len(along), np.nan)
@@ -136,6 +135,7 @@ def surface_below(holes: Sequence[Hole], box: Box, along: np.ndarray, diameter: 
         heights[waiting[solid]] = y
         waiting = waiting[~solid]
     level = heights == top - 0.5 * diameter
+    level[level] = ~_is_open(holes, along[level], top) if holes else True
     heights[level] = top
     below = np.flatnonzero(~level & ~np.isnan(heights))
     low, high = heights[below], heights[below] + 0.5 * diameter

@@ -16,6 +16,7 @@ from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outline
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
+from dembound.results.surface import NUMBERED
 
 LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""
@@ -43,6 +44,15 @@ TICK_APART, SMALL = 0.6, 7
 
 CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
 """Names of the two kinds of cracks in the legend; shape, size in points² and colour of their marks."""
+
+MANY_CRACKS = 500
+"""Number of cracks at the last time from which on their marks together keep their area, so that disks stay visible."""
+
+SMALLEST_CRACK = 0.1
+"""Least size of the mark of a crack over that of one of few."""
+
+LONGEST_ROW = 6
+"""Number of monitors of a row up to which all are named."""
 
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
 """Drawing order of marks."""
@@ -228,13 +238,15 @@ def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> Non
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:
     """A mark at each bond broken up to one of the times; the legend may have their number at the last time."""
     until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
+    share = min(1.0, max(SMALLEST_CRACK, MANY_CRACKS / max(1, len(shown.cracks[-1]["position"]))))
     for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
         places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
         if len(places) > 0:
-            looks: dict[str, Any] = {"color": colour, "edgecolors": "white", "linewidths": 0.5, "zorder": ABOVE_DISKS}
+            looks: dict[str, Any] = {"color": colour, "edgecolors": "white", "zorder": ABOVE_DISKS}
             x, y = places.T
             number = f" ({len(last):,}{until})" if counted else ""
-            panel.scatter(x, y, s=size, marker=mark, label=f"{label}{number}", **looks)
+            looks["linewidths"] = 0.5 * share
+            panel.scatter(x, y, s=share * size, marker=mark, label=f"{label}{number}", **looks)
 
 
 def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
@@ -251,10 +263,21 @@ def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
         panel.scatter(x, y, **hollow, **mark)
     plate: dict[str, Any] = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
     looks: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8, "bbox": plate, "zorder": ABOVE_CRACKS}
-    sides = name_sides(72.0 * scale * places, [len(name) for name in disks.monitors])
-    for name, place, (side, up) in zip(disks.monitors, places, sides, strict=True):
+    named = shown_names(list(disks.monitors))
+    places = np.array([disks.monitors[name] for name in named])
+    sides = name_sides(72.0 * scale * places, [len(name) for name in named])
+    for name, place, (side, up) in zip(named, places, sides, strict=True):
         align = {0.0: "center", 1.0: "left", -1.0: "right"}[side]
         panel.annotate(name, tuple(place), (8.0 * side, up), ha=align, va="bottom", **looks)
+
+
+def shown_names(names: Sequence[str]) -> list[str]:
+    """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` its ends alone."""
+    rows: dict[str, list[str]] = {}
+    for name in names:
+        numbered = NUMBERED.fullmatch(name)
+        rows.setdefault(numbered[1] if numbered else name, []).append(name)
+    return [name for row in rows.values() for name in (row if len(row) <= LONGEST_ROW else (row[0], row[-1]))]
 
 
 def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, float]]:

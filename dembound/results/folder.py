@@ -61,7 +61,7 @@ REPLACED = ".replaced"
 LOCK = "run.lock"
 
 OWN = re.compile(
-    r"(run\.(h5|h5\.log|lock)|checkpoint\.npz|settled/[a-z.]+\.npz|summary\.json|estimate\.h5"
+    r"(run\.(h5|h5\.log|lock)|checkpoint\.npz|settled/[a-z._]+\.npz|summary\.json|estimate\.h5"
     r"|(scene|histories|histories_stress)\.png"
     r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py))"
     r"((\.\w{8})?\.(part|new)(/[^/]+)?)?"

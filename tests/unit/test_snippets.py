@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[2]
 GALLERY = ROOT / "docs" / "gallery"
 """Its pages show shipped cases, which read files beside them."""
 
-START, CHINESE = ROOT / "docs" / "start", ROOT / "docs" / "zh"
+START, TASKS, CHINESE = (ROOT / "docs" / name for name in ("start", "tasks", "zh"))
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"^```(?P<language>\w*)\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
@@ -91,7 +91,7 @@ def test_commands_have_these_options_and_arguments(page, tmp_path, monkeypatch) 
 
 @pytest.mark.parametrize("page", sorted({*CHINESE.glob("*.md")} - {CHINESE / "index.md"}), ids=lambda page: page.stem)
 def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_case(page: Path) -> None:
-    originals = [START / page.name, *(ROOT / "cases").glob("*.toml")]
+    originals = [START / page.name, TASKS / page.name, *(ROOT / "cases").glob("*.toml")]
     texts = [path.read_text() for path in originals if path.is_file()]
     codes = [*blocks(page, "toml"), *blocks(page, "python")]
     assert not [code for code in codes if not any(code in text for text in texts)]

@@ -96,6 +96,12 @@ bar | young | write youngs_modulus, Pa
 run | mass_scaling | there is none: it would change the speed of waves
 static | in_situ | write stress = [sxx, syy, sxy]
  | gravity | give [[load]] an acceleration
+ | water | there is none: the ground is dry, without a water table, pore pressure or flow; see docs: tasks/slopes
+ | water_table | there is none: the ground is dry
+ | phreatic | there is none: the ground is dry
+ | reservoir | there is none: no water stands on the ground, a dam is empty
+material | pore_pressure | there is none: the ground is dry
+static | pore pressure | there is none: the ground is dry
  | walls | [boundary.bottom] and other sides have a type
 bar | dx | write spacing, m
 """

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.collections import EllipseCollection
 
 from dembound.errors import CaseError
-from dembound.plot.scene import plot_scene
+from dembound.plot.scene import CRACKS, MANY_CRACKS, plot_scene, shown_names
 
 
 def disks_of(panel):
@@ -102,6 +102,23 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke_above_the_disks(crack
             expected = cracks["position"][past & (cracks["shear"][:] == shear)]
             np.testing.assert_array_equal(marks[f"{label} ({len(expected)})"].get_offsets(), expected)
             assert len(expected) > 0
+
+
+def test_many_cracks_have_smaller_marks_so_that_disks_stay_visible(tmp_path):
+    """Four times as many cracks as `MANY_CRACKS` have marks of a quarter of the area."""
+    path = block(tmp_path / "run.h5", 8, 6, pulse(4.0))
+    with h5py.File(path, "a") as file:
+        for name, values in (("time", 0.0), ("shear", False), ("position", [[3.0, 3.0]])):
+            del file[f"cracks/{name}"]
+            file[f"cracks/{name}"] = np.full((4 * MANY_CRACKS, 2) if name == "position" else 4 * MANY_CRACKS, values)
+    (marks,) = [each for each in plot_scene(path).axes[0].collections if "tension" in each.get_label()]
+    _, size, _ = CRACKS["bond broken in tension"]
+    np.testing.assert_allclose(marks.get_sizes(), size / 4.0)
+
+
+def test_a_long_row_of_monitors_is_named_at_its_ends():
+    row = [f"surface_{number}" for number in range(1, 31)]
+    assert shown_names(["crest", *row, "toe_1", "toe_2"]) == ["crest", "surface_1", "surface_30", "toe_1", "toe_2"]
 
 
 def test_small_disks_give_way_to_their_mean(run):

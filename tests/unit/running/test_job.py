@@ -77,6 +77,7 @@ def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling
     assert found >= {f"{name}{ending}" for name in of_each for ending in ("_0000.vtu", "_0001.vtu", ".pvd", ".vtkhdf")}
     assert found >= {"paraview/cracks.vtu", "checkpoint.npz", "settled/body.npz"}
     assert found >= {"scene.png", "histories.png", "histories_stress.png"}
+    assert OWN.fullmatch("settled/before.right_column.npz")  # of ground of two heights
     for name in ("notes.txt", "paraview/mine_0000.vtu", "paraview/state.pvsm", "other/run.h5", "run.h5.bak"):
         assert not OWN.fullmatch(name)
 

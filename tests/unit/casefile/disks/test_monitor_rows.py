@@ -35,6 +35,13 @@ def test_a_row_follows_the_outline_of_the_uppermost_ground():
     np.testing.assert_allclose(y, 20.0 - 1.2 * (x - 10.0), atol=2e-9)
 
 
+def test_a_row_follows_ground_that_is_less_than_half_a_disk_below_the_top():
+    """Disks of 1 m: a surface that falls from the top by 0.1 m; at the top's height a monitor would be in the air."""
+    line = [[0.0, 20.0], [15.0, 20.0], [20.0, 19.9], [30.0, 19.9]]
+    x, y = places(GROUND | {"ground": {"surface": line}, "monitor": [ROW]}).T
+    np.testing.assert_allclose(y, np.interp(x, *np.transpose(line)), atol=2e-9)
+
+
 def test_the_ground_goes_on_at_the_height_of_its_side_and_its_places_do_not_depend_on_the_disks():
     x, y = places(on_ground(SLOPE, **{"from": -3.0, "to": 34.0})).T
     assert (x[0], y[0], y[-1]) == (-3.0, 20.0, pytest.approx(8.0))

@@ -133,6 +133,14 @@ def test_springs_and_dashpots_along_the_normal_reflect_by_their_impedance() -> N
     assert found.converted["p"][0, 0] < 1e-20
 
 
+def test_the_end_of_a_side_is_whole_below_a_surface() -> None:
+    """The strip of bricks is higher than the ground, which must not cut it off."""
+    tables = LATTICE | {"boundary": {"bottom": {"type": "viscous"}}}
+    surface = {"surface": [[0.0, 3.0], [3.0, 3.0], [5.0, 2.0], [8.0, 2.0]]}
+    level, stepped = (end_scene(small(each), "bottom", 30) for each in (tables, tables | {"ground": surface}))
+    assert stepped.disk_count == level.disk_count == 30
+
+
 def test_a_side_is_answered_quickly_beside_matched_factors() -> None:
     case = small(GRAINS, changes={"boundary.right.beta_p": 1.0})
     found = measure_side(case, "right", [0.0, 30.0], 3, quick=True)
