@@ -23,8 +23,9 @@ sys.path.insert(0, str(ROOT / "cases" / "outside"))
 from grid_scene import GridScene, step_limit
 
 from dembound import api
+from dembound.continuum.axis import Around
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step

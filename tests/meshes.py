@@ -1,6 +1,7 @@
 """Meshes of a few elements for tests of several modules."""
 
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.axis import Around
+from dembound.continuum.mesh import Mesh
 
 ORDER = 4
 

@@ -1,10 +1,31 @@
-"""Cells of a mesh along one axis, with the Gauss-Lobatto-Legendre points of elements."""
+"""Elements of a mesh along one axis and at its sides, with the Gauss-Lobatto-Legendre points of elements."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+
+WHOLE = 1e-9
+"""Part of an element by which a length may exceed a whole number of elements without another one."""
+
+
+class Around(NamedTuple):
+    """Numbers of elements at the four sides."""
+
+    left: int = 0
+    right: int = 0
+    bottom: int = 0
+    top: int = 0
+
+    def along(self, axis: int) -> tuple[int, int]:
+        """Layers before and after along x (axis 0) or y (1)."""
+        return (self.left, self.right) if axis == 0 else (self.bottom, self.top)
+
+
+NONE = Around()
 
 
 class Rule:
@@ -137,3 +158,9 @@ class Axis:
     def cell_at(self, places: np.ndarray) -> np.ndarray:
         """The cell (k,) at each of the places (k,) m: the one before on an edge, the end cell beyond the ends."""
         return np.searchsorted(self.edges[1:-1], places)
+
+
+def divided(length: float, largest: float) -> tuple[float, ...]:
+    """The sizes (m) of the fewest equal parts of a length that are not larger than `largest`."""
+    count = math.ceil(length / largest - WHOLE)
+    return (length / count,) * count if count else ()

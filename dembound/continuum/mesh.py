@@ -1,34 +1,14 @@
 """A mesh of rectangular spectral elements round a rectangular box, with absorbing elements at its sides."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from dembound.continuum.axis import Axis, Rule
+from dembound.continuum.axis import NONE, Around, Axis, Rule, divided
 from dembound.table import Box
-
-WHOLE = 1e-9
-"""Part of an element by which a length may exceed a whole number of elements without another one."""
-
-
-class Around(NamedTuple):
-    """Numbers of elements at the four sides."""
-
-    left: int = 0
-    right: int = 0
-    bottom: int = 0
-    top: int = 0
-
-    def along(self, axis: int) -> tuple[int, int]:
-        """Layers before and after along x (axis 0) or y (1)."""
-        return (self.left, self.right) if axis == 0 else (self.bottom, self.top)
-
-
-NONE = Around()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -355,9 +335,3 @@ class Mesh:
     def areas_of(self, chosen: np.ndarray | slice) -> np.ndarray:
         """(n,) m², the part of the areas in some elements."""
         return np.bincount(self.nodes[chosen].ravel(), self.quadrature[chosen].ravel(), self.count)
-
-
-def divided(length: float, largest: float) -> tuple[float, ...]:
-    """The sizes (m) of the fewest equal parts of a length that are not larger than `largest`."""
-    count = math.ceil(length / largest - WHOLE)
-    return (length / count,) * count if count else ()

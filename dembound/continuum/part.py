@@ -7,10 +7,11 @@ import numba
 import numpy as np
 
 from dembound.boundaries.edge import SIDES
+from dembound.continuum.axis import WHOLE
 from dembound.continuum.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.continuum.layer import USUAL, Absorption, Profile, along_in
 from dembound.continuum.medium import Ground, Layered, Medium, layered
-from dembound.continuum.mesh import WHOLE, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.damping import Attenuation, factors_of
 from dembound.kernels import damped_grid  # noqa: F401  # it registers its law
 from dembound.kernels.common import CHUNKS

@@ -10,11 +10,13 @@ import numpy as np
 from dembound.boundaries.edge import Edge
 from dembound.boundaries.half_mass import half_contacts, mass_factor
 from dembound.boundaries.support import Supports
+from dembound.casefile.disks.load import FREE_FIELD
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
+from dembound.disks.columns import COLUMNS, free_field_attributes, level_at, parts_of
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.intact import intact_disks, intact_zones
-from dembound.disks.material.at_rest import StressAtRest, levels_of, stress_at_rest
+from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
@@ -56,8 +58,7 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
     own = []
     for seam in seams:
-        owner = up[np.repeat(seam.twin[seam.node], seam.contact_counts)]
-        other = up[seam.neighbour]
+        owner, other = up[np.repeat(seam.twin[seam.node], seam.contact_counts)], up[seam.neighbour]
         pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
         own.append(replace(seam, contact_type=seam.contact_type + types * pairing))
     return assembly, tuple(own)
@@ -131,6 +132,11 @@ class DiskBody(Scene):
     def places(self) -> dict[str, tuple[float, float]]:
         """Requested positions of the monitors, m, by name."""
         return {monitor.name: monitor.position for monitor in self.case.monitor}
+
+    def attributes_of_monitor(self, name: str) -> dict[str, Any]:
+        """Of a free field the side and the surface of its ground."""
+        ground = self.case, self.seams, self.outside, self.monitored[name]
+        return free_field_attributes(*ground) if name.endswith(FREE_FIELD) else {}
 
     @property
     def disk_count(self) -> int:
@@ -315,31 +321,3 @@ class DiskBody(Scene):
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
         """Whether the scene's law is history-dependent: contacts that open and slide, bonds that break."""
         return self.ground.law.has_history
-
-
-COLUMNS = ("column", "right_column")
-"""The names of the parts that are free-field columns."""
-
-
-def level_at(surface: np.ndarray, seam: Seam) -> np.ndarray:
-    """The point (2, 1) m of a surface (2, k) at the side for which a column stands."""
-    return surface[:, [-1]] if seam.sides == ("right",) else surface[:, [0]]
-
-
-def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
-    """The particle ranges of `count` particles by part: the free-field columns, if there are any, and the body."""
-    columns = {name: seam.disks for name, seam in zip(COLUMNS, seams, strict=False)}
-    return {**columns, "body": slice(columns_end(seams), count)}
-
-
-def levels_in(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: StressAtRest | None
-) -> np.ndarray | None:
-    """A number (n,) of each disk, the same for copies with the same constants; None if all copies have.
-
-    Rows of bricks have constants of their own in layers, or under a history-dependent law with K0.
-    """
-    has_k0 = ground.law.has_history and case.static is not None and case.static.k0 is not None
-    if not (ground.is_layered or has_k0):
-        return None
-    return levels_of(assembly, ground.brick, at_rest if has_k0 else None)

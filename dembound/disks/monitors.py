@@ -89,8 +89,9 @@ def monitors_of(
             if name in between:
                 between[name] = replace(between[name], known=_moving(waves, ground, *disk))
             beside = "right" if disk[0][0] > case.middle else "left"
+            there = waves.in_ground(beside, disk[0][None])[0] if isinstance(waves, UnlikeWaves) else disk[0]
             between[f"{name}{FREE_FIELD}"] = _in_column(
-                disk[0], twins.get(name), _moving(waves, ground, *disk, beside=beside)
+                there, twins.get(name), _moving(waves, ground, *disk, beside=beside)
             )
         twins = nodes | twins
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between

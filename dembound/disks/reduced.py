@@ -8,7 +8,8 @@ import numpy as np
 
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Supports
-from dembound.disks.body import parts_of, with_half_contacts, with_layers
+from dembound.disks.body import with_half_contacts, with_layers
+from dembound.disks.columns import parts_of
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.memory import run_bytes
 from dembound.disks.scene import DiskScene

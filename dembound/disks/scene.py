@@ -3,30 +3,30 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import zip_longest
 
 import numpy as np
 
-from dembound.boundaries import Boundary, Periodic, is_far
-from dembound.boundaries.fixed import Fixed
+from dembound.boundaries import Periodic, is_far
 from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
-from dembound.boundaries.roller import Roller
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import GridSizes
 from dembound.disks.bearing import Springs, bearing_springs
-from dembound.disks.body import (
-    DiskBody,
+from dembound.disks.body import DiskBody, with_half_contacts, with_layers
+from dembound.disks.columns import (
+    UPRIGHT,
+    columns_stand_fast,
+    foot_of,
+    ground_beneath,
     level_at,
-    levels_in,
+    levels_by_part,
     parts_of,
-    with_half_contacts,
-    with_layers,
+    standing_fast,
+    standing_of,
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
-from dembound.disks.material.at_rest import stress_at_rest
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import layered
@@ -40,19 +40,14 @@ from dembound.disks.stepping.fields import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.supports import steady, supports_of
 from dembound.disks.surroundings.continuum import Surroundings, surroundings_of
-from dembound.disks.surroundings.edges import ON_IT, edges_beside_columns, find_edges, hollowed, require_held
+from dembound.disks.surroundings.edges import edges_beside_columns, find_edges, hollowed, require_held
 from dembound.disks.surroundings.frequencies import mechanisms_of
 from dembound.disks.surroundings.layered_waves import undisturbed
-from dembound.disks.surroundings.mesh import NO_FLOORS, Level, Outline
+from dembound.disks.surroundings.mesh import NO_FLOORS, Outline
 from dembound.holes.hole import Floor
 from dembound.kernels.contacts import REFERENCE
-from dembound.motion.state import Layout
 from dembound.packings.column import Seam, Standing, columns_end, with_columns
 from dembound.packings.tiling import Assembly, tile
-
-UPRIGHT = (True, False)
-"""Along which axes a free-field column is periodic."""
-
 
 CANCELS = 1e-6
 """Resultant of the differences of side forces from stress times length, over the forces, that counts as rounding."""
@@ -208,8 +203,8 @@ def _scene(
     """
     body, beyond = assembly, case.outside_sides
     seams: tuple[Seam, ...] = ()
-    around = _beneath(case, ground) if set(beyond) == {"bottom"} else ground
-    standing = _standing(case, ground, body, floors)
+    around = ground_beneath(case, ground) if set(beyond) == {"bottom"} else ground
+    standing = standing_of(case, ground, body, floors)
     outline = None
     if beyond:
         slit = len(standing) > 1 or (case.incident is not None and bool(floors))
@@ -230,7 +225,7 @@ def _scene(
         ground,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
-        _levels(case, ground, assembly, seams, surface),
+        levels_by_part(case, ground, assembly, seams, surface),
     )
     outside, layout = None, slots
     if outline is not None:
@@ -239,7 +234,7 @@ def _scene(
         layout = outside.laid_out(layout)
     feet: list[Surroundings] = []
     for seam in seams if "bottom" in beyond else ():
-        feet.append(_foot(case, ground, assembly, seam, layout, outline if len(seams) > 1 else None))
+        feet.append(foot_of(case, ground, assembly, seam, layout, outline if len(seams) > 1 else None))
         layout = feet[-1].laid_out(layout)
     waves = None if outside is None else undisturbed(case, ground, outside)
     monitors, between = monitors_of(case, ground, assembly, seams, outside, waves)
@@ -262,55 +257,6 @@ def _scene(
     return with_waves(scene, case.wave)
 
 
-def _levels(
-    case: DiskCase,
-    ground: PackedMaterial,
-    assembly: Assembly,
-    seams: tuple[Seam, ...],
-    surface: np.ndarray | None,
-) -> dict[str, np.ndarray | None]:
-    """Levels of the disks of each part, see `levels_in`; those of columns under their own stress at rest."""
-    found = {}
-    for (name, disks), seam in zip_longest(parts_of(len(assembly.radii), seams).items(), seams):
-        own = surface if surface is None or seam is None else level_at(surface, seam)
-        found[name] = levels_in(case, ground, assembly.part(disks), stress_at_rest(case, ground, own))
-    return found
-
-
-def _standing(
-    case: DiskCase, ground: PackedMaterial, body: Assembly, floors: Mapping[str, Floor]
-) -> tuple[Standing, ...]:
-    """The free-field columns of a body: one, or one for each side where the ground left and right differs."""
-    sides = case.column_sides
-    tops = {side: Level.of(ground, body, floors[side], side).height for side in sides if side in floors}
-    highest, lowest = (of(tops.get(side, case.box[3]) for side in ("left", "right")) for of in (max, min))
-    if not {"left", "right"} <= {*sides} or highest - lowest <= ON_IT * ground.brick.mean_diameter:
-        return (Standing(sides, next(iter(tops.values()), None)),) if sides else ()
-    left = tuple(side for side in sides if side != "right")
-    return Standing(left, tops.get("left")), Standing(("right",), tops.get("right"))
-
-
-def _foot(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout, beside: Outline | None
-) -> Surroundings:
-    """The continuum below a free-field column, of equal width; layout : of all nodes before its own.
-
-    beside : the continuum round the body, if its elements have the same heights, as below two columns.
-    """
-    column, ground = assembly.part(seam.disks), _beneath(case, ground)
-    if beside is None:
-        outline, inner = Outline.of(case, ground, column, ("bottom",), UPRIGHT), None
-    else:
-        outline, inner = Outline.below(case, ground, column, beside), beside.mesh.inner
-    return surroundings_of(ground, column, outline, layout, seam.disks.start, inner=inner)
-
-
-def _beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
-    """The ground below the box of a case: one material, or all layers if some begin below."""
-    deeper = ground.is_layered and case.joints[-1] < case.box[1]
-    return ground if deeper else ground.at(case.box[1])
-
-
 def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     """A free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
@@ -329,7 +275,7 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     static = case.static
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
-        if columns_stand_fast(scene):
+        if columns_stand_fast(case, scene.seams):
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
@@ -342,16 +288,6 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     surface = None if scene.surface is None else level_at(scene.surface, scene.seams[number])
     intact = scene.intact is not None and bool(scene.intact[scene.seams[number].disks].all())
     return replace(alone_scene, surface=surface, all_intact=intact)
-
-
-def columns_stand_fast(scene: DiskScene) -> bool:
-    """Whether columns are fixed at rest where their body is on rollers: beside unlike ones, and of uneven packings."""
-    return len(scene.seams) > 1 or not scene.case.packing.is_lattice
-
-
-def standing_fast(table: Boundary) -> Boundary:
-    """The support of a column at rest in place of that of its body: one on rollers would slide under what is left."""
-    return Fixed(type="fixed") if isinstance(table, Roller) else table
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:

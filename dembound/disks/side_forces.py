@@ -9,7 +9,8 @@ import numpy as np
 
 from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.support import Edge
-from dembound.disks.body import COLUMNS, DiskBody
+from dembound.disks.body import DiskBody
+from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.pairs import PIECE, Piece
 from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants

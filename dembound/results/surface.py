@@ -164,23 +164,22 @@ def _height(history: MonitorRecord) -> float:
     return float(history.position[1])
 
 
-def _sides(path: Path, histories: Mapping[str, MonitorRecord]) -> tuple[dict[str, int], dict[int, float], float]:
-    """Monitors that have twins -> the side of these, the highest y (m) of each side, and the mean diameter, m.
+def _sides(path: Path, histories: Mapping[str, MonitorRecord]) -> tuple[dict[str, str], dict[str, float], float]:
+    """Monitors that have twins -> the side of these, the height y (m) of the surface by side, and the mean diameter, m.
 
-    Sides are 0, the left column of two, the only one, or ground without disks, and 1, the right one.
+    Records of earlier versions have neither: one ground as high as the box of disks.
     """
     with open_record(path) as file:
         if is_line(file.attrs["size"]):
             raise CaseError([f"RESULTS: {path} is of a bar, which has no surface"])
-        middle, top = (file.attrs["corner"] + np.array([0.5, 1.0]) * file.attrs["size"]).tolist()
-        columns = file["particles/position"][: int(file.attrs.get("column", 0))]
+        box_top = float(file.attrs["corner"][1] + file.attrs["size"][1])
         diameter = 2.0 * float(file["particles/radius"][:].mean())
-        in_column = {name: int(group.attrs["particle"]) >= 0 for name, group in file.get("histories", {}).items()}
-    twins = {name: f"{name}{FREE_FIELD}" for name in histories if f"{name}{FREE_FIELD}" in histories}
-    sides = {name: int(in_column[twin] and histories[twin].position[0] > middle) for name, twin in twins.items()}
-    beyond = columns[:, 0] > middle
-    tops = {k: float(own[:, 1].max()) for k in (0, 1) if len(own := columns[beyond == bool(k)])}
-    return sides, {0: top, 1: top} | tops, diameter
+        sides, tops = {}, {}
+        for name in (name for name in histories if f"{name}{FREE_FIELD}" in histories):
+            twin = file[f"histories/{name}{FREE_FIELD}"].attrs
+            sides[name] = str(twin.get("side", "left"))
+            tops[sides[name]] = float(twin.get("surface", box_top))
+    return sides, tops, diameter
 
 
 def _chosen(known: Sequence[str], histories: Mapping[str, MonitorRecord], asked: Sequence[str] | None) -> list[str]:

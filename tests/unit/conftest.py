@@ -17,8 +17,9 @@ from typer.main import get_command
 from dembound import cli
 from dembound.casefile import Case
 from dembound.cli import compiling
+from dembound.continuum.axis import Around
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.scene import DiskScene

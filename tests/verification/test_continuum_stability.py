@@ -11,9 +11,10 @@ import pytest
 from grid_scene import GridScene, step_limit
 
 from dembound.continuum import layer
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.motion.simulation import Simulation
 

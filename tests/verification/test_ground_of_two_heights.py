@@ -113,7 +113,7 @@ def test_so_do_near_sides_under_a_wave_at_an_angle(lab, kind: str) -> None:
 def test_level_ground_moves_as_its_columns(lab, monkeypatch, kind: str, changes: dict) -> None:
     """To rounding, 1e-11 of a wave of 1 m/s, and the continuum, which has the motion relative to them, is at rest."""
     columns = Standing(("left", "bottom")), Standing(("right",))
-    monkeypatch.setattr(scenes, "_standing", lambda *_: columns)
+    monkeypatch.setattr(scenes, "standing_of", lambda *_: columns)
     scene = build(slope(lab, [(0.0, 12.0), (20.0, 12.0)], kind, **changes))
     assert len(scene.feet) == 2
     simulation = Simulation(scene, choose_step(scene)[0])

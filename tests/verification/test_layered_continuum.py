@@ -13,9 +13,10 @@ from decay import kinetic
 from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.continuum.axis import Around, divided
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Layered, Medium
-from dembound.continuum.mesh import Around, Mesh, divided
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.exact.column import Column, Layer
 from dembound.motion.simulation import Simulation

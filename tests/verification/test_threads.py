@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from grid_scene import GridScene, step_limit
 
+from dembound.continuum.axis import Around
 from dembound.continuum.medium import Layered, Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build

@@ -6,9 +6,10 @@ from angles import Side, branches, reflection
 from decay import step_beside
 from grid_scene import GridScene, step_limit
 
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
 from dembound.motion.simulation import Simulation
 

@@ -159,7 +159,7 @@ UPWARDS = "boundary.bottom the wave, which then rises straight up"
 
 
 def _oblique_beside(tables: Mapping[str, Any], where: str) -> Iterator[str]:
-    """What a wave at an angle cannot go with where the ground beyond a side is lower; where : in words."""
+    """What a wave at an angle cannot go with where the ground beyond a side is lower than the box; where : in words."""
     others = {
         "layers": bool(tables["layer"]),
         "quality_factor": any(
@@ -169,8 +169,8 @@ def _oblique_beside(tables: Mapping[str, Any], where: str) -> Iterator[str]:
     }
     for what in (name for name, there in others.items() if there):
         yield (
-            f"incident: is not known together with {what} where the ground is not as high at both sides, with its "
-            f"surface {where}; leave one out, or give {UPWARDS}"
+            f"incident: is not known together with {what} where the ground beyond a side is lower than the disks, with "
+            f"its surface {where}; leave one out, or give {UPWARDS}"
         )
 
 

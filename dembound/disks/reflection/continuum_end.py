@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dembound.boundaries.edge import normal_axis
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Profile, along_in
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import LAST, BrickInRow, LastBrick, is_outwards
 from dembound.disks.reflection.modes import Oscillation

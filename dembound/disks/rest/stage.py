@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.disks.body import COLUMNS
+from dembound.disks.columns import COLUMNS
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene

@@ -9,9 +9,10 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import BoundaryMedium, Edge, normal_axis
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
+from dembound.disks.columns import columns_stand_fast, standing_fast
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.material.constants import limits_of
-from dembound.disks.scene import DiskScene, columns_stand_fast, standing_fast
+from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import forces_at_rest, side_forces
 from dembound.disks.sides import media_of
 from dembound.disks.stepping.balance import mean_rotations
@@ -104,7 +105,7 @@ class StaticScene:
             if side in scene.edges:
                 for part, medium in media_of(scene, side):
                     _support(scene, table, part, medium, builder)
-                if scene.seams and columns_stand_fast(scene):
+                if scene.seams and columns_stand_fast(scene.case, scene.seams):
                     columns = scene.edges[side].only(scene.edges[side].nodes < scene.column_count, 0.0)
                     _hold_too(standing_fast(table), table, columns, builder)
         self.static = static

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries.edge import OPPOSITE, SIDES, normal_axis
-from dembound.disks.body import COLUMNS, DiskBody
+from dembound.disks.body import DiskBody
+from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.scene_parts import DiskParts, contact_lists, disks_on_foot
 from dembound.packings.cut import cut_contacts

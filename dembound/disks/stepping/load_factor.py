@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.body import COLUMNS
+from dembound.disks.columns import COLUMNS
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
 from dembound.disks.stepping.system import DiskSystem

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.continuum.part import GridPart
-from dembound.disks.body import COLUMNS, DiskBody, levels_in
+from dembound.disks.body import DiskBody
+from dembound.disks.columns import COLUMNS, levels_in
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports

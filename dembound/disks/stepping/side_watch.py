@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.body import COLUMNS, DiskBody
+from dembound.disks.body import DiskBody
+from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
 from dembound.errors import RunError

@@ -120,9 +120,13 @@ class UnlikeWaves(GroundWaves):
     ) -> np.ndarray:
         """Motion (k, d, 3) at places (d, 2) m of the ground at one side, see `GroundWaves.motion`."""
         left = GroundWaves(self.medium, self.waves, self.signals, self.grain)
-        ground, top = (left, self.tops[0]) if side == "left" else (self.right, self.tops[1])
-        lower = np.column_stack([places[:, 0], np.minimum(places[:, 1], top)])
-        return ground.motion(of, times, lower, corrector)
+        ground = left if side == "left" else self.right
+        return ground.motion(of, times, self.in_ground(side, places), corrector)
+
+    def in_ground(self, side: str, places: np.ndarray) -> np.ndarray:
+        """Places (d, 2) m, those above the ground at a side on its surface."""
+        top = self.tops[0 if side == "left" else 1]
+        return np.column_stack([places[:, 0], np.minimum(places[:, 1], top)])
 
 
 def _gradient(wave: ElasticPlaneWave) -> np.ndarray:

@@ -12,9 +12,10 @@ import numpy as np
 
 from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
+from dembound.continuum.axis import WHOLE, Around, divided
 from dembound.continuum.layer import LONG_WAVES
 from dembound.continuum.medium import Ground, Layered, Medium
-from dembound.continuum.mesh import WHOLE, Around, Mesh, divided
+from dembound.continuum.mesh import Mesh
 from dembound.disks.material.free_surface import inset
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial

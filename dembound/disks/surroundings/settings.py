@@ -12,9 +12,10 @@ import numpy as np
 from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum import sizing
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Ground, Layered, layered
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.disks.surroundings.near_fields import extents, lasting_time, near_fields, signals_of
 from dembound.errors import CaseError
 from dembound.table import Box

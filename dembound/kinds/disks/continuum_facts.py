@@ -54,9 +54,7 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     if case.packing.is_lattice:
         return ""
     if len(ground.brick.radii) > packing_waves.MOST_DISKS:
-        return (
-            f"send back short waves, which is not computed for bricks of more than {packing_waves.MOST_DISKS:,} disks"
-        )
+        return f"send back short waves, not computed for bricks of more than {packing_waves.MOST_DISKS:,} disks"
     axes = sorted({normal_axis(side) for side in case.driving})
     found = packing_waves.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
     share, accuracy = found.share, case.outside.accuracy

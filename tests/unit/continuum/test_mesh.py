@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from meshes import ORDER, below, buried, stepped, uneven
 
-from dembound.continuum.axis import Rule
+from dembound.continuum.axis import NONE, Around, Rule
 from dembound.continuum.edges import edge_lengths, free_edges, traction_in
 from dembound.continuum.interpolation import located
-from dembound.continuum.mesh import NONE, Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.table import EVERYWHERE
 
 

@@ -5,9 +5,10 @@ import pytest
 from grid_scene import GridScene, step_limit
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Absorption
 from dembound.continuum.medium import Layered, Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody, GridPart, stress
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation

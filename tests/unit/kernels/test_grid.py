@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from grid_scene import GridScene
 
+from dembound.continuum.axis import Around
 from dembound.continuum.layer import Profile
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody, GridPart
 from dembound.kernels.grid import move
 from dembound.kernels.tables import Body

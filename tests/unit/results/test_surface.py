@@ -34,16 +34,16 @@ def run(tmp_path):
         put(file, "row_2", (4.0, 3.5), x=3.0, y=1.0, frequency=10.0)
         put(file, "row_1", (1.0, 7.5), x=3.0, y=-1.0, end=-0.2)
         put(file, "deep", (5.0, 1.0), x=1.0)
-        put(file, "row_10.free_field", (12.0, 4.5), particle=2, x=4.0, end=0.1)
-        put(file, "row_2.free_field", (-2.0, 3.5), particle=0, x=0.1)
-        put(file, "row_1.free_field", (-2.0, 7.5), particle=1, x=2.0, y=1e-6)
+        put(file, "row_10.free_field", (12.0, 4.5), side="right", surface=5.0, x=4.0, end=0.1)
+        put(file, "row_2.free_field", (-2.0, 3.5), side="left", surface=8.0, x=0.1)
+        put(file, "row_1.free_field", (-2.0, 7.5), side="left", surface=8.0, x=2.0, y=1e-6)
     return path
 
 
-def put(file, name, place, particle=3, x=0.0, y=0.0, end=0.0, frequency=5.0):
+def put(file, name, place, x=0.0, y=0.0, end=0.0, frequency=5.0, **attributes):
     """A history of pulses along x and y and of a displacement that reaches `end` along y."""
     group = file.create_group(f"histories/{name}")
-    group.attrs.update({"position": place, "requested": place, "particle": particle})
+    group.attrs.update({"position": place, "requested": place, **attributes})
     velocity, displacement = np.zeros((COUNT, 3)), np.zeros((COUNT, 3))
     velocity[:, 0], velocity[:, 1] = pulse(x, frequency), pulse(y, frequency)
     displacement[COUNT // 2 :, 1] = end
@@ -75,8 +75,8 @@ def test_the_free_field_may_be_named_and_monitors_chosen(run):
     with h5py.File(run, "r+") as file:
         del file["histories/row_1"], file["histories/row_1.free_field"]
     found = amplification(run, ["row_2", "row_10"])
-    assert found.deep == pytest.approx(4.0)
-    assert list(found.notes())[-1].startswith("the free field is up to 4 m below the surface")
+    assert found.deep == pytest.approx(4.5)
+    assert list(found.notes())[-1].startswith("the free field is up to 4.5 m below the surface")
 
 
 def test_what_cannot_be_shown_is_said(run):

@@ -187,7 +187,9 @@ def test_beside_a_floor_waves_rise_and_loads_on_all_disks_need_a_stage() -> None
     line = f"load[1, weight]: acts on all disks, which needs a [static] stage and no wave, {WHY}"
     waved = {"load": [WEIGHT["load"][0] | {"wave": "w"}]} | STAGE
     oblique = {"incident": {"type": "sv", "angle": 10.0, "wave": "w"}}
-    where = "where the ground is not as high at both sides, with its surface at y = 11.5 m beyond the right side"
+    where = (
+        "where the ground beyond a side is lower than the disks, with its surface at y = 11.5 m beyond the right side"
+    )
     assert problems_in(lambda: sloped(oblique)) == []
     assert problems_in(lambda: sloped(oblique | {"layer": [{"thickness": 8.0}, {}]})) == [
         f"incident: is not known together with layers {where}; leave one out, or give {UPWARDS}"

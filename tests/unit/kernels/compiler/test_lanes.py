@@ -145,7 +145,8 @@ MOTION = """
 from grid_scene import GridScene
 from dembound.continuum.part import GridBody
 from dembound.continuum.medium import Medium
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.axis import Around
+from dembound.continuum.mesh import Mesh
 
 simulation = Simulation(scene, 1e-4)
 simulation.run(3)

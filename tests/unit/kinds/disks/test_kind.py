@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 import pyvista
 
-from dembound.continuum.mesh import Around, Mesh
+from dembound.continuum.axis import Around
+from dembound.continuum.mesh import Mesh
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.errors import CaseError
