@@ -129,6 +129,7 @@ def _estimate(planned: Plan) -> tuple[float, float, str]:
     """
     scene, clock = planned.stepped, time.process_time if planned.stepped.threads == 1 else time.perf_counter
     simulation, ledger = simulation_of(planned, Beginning(scene.system(planned.time_step)), Clock())
+    ledger.watches = not planned.kind.settles(scene.case)  # before it settles a body is out of balance with its sides
 
     def trial(steps: int) -> float:
         began = clock()

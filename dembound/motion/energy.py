@@ -142,6 +142,7 @@ class Ledger(Tracker):
         self.entries: list[Entry] = []
         self.sides: list[np.ndarray] = []
         self.side_names = [] if run.sides is None else run.sides.names
+        self.watches = True  # raises RunError for energy from nothing
         self.due = run.state.step
         self._time_step = run.time_step
         self._interval, self._last = interval, last
@@ -212,6 +213,8 @@ class Ledger(Tracker):
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
+        if not self.watches:
+            return
         self._watch(run, u)
         borne = min(load, 0.0) - max(contact + bond, 0.0)  # weight lifted, and strain in a stress at rest
         system.look(u, state.step - 1, borne, max(supplied, sum(self._first)))
