@@ -157,7 +157,7 @@ def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
 
 def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
     """Forces (3, e, 3) per stress and (3, e) as built, see `SideForces`, of contacts on the disks of one end."""
-    ground, brick, locked_in = scene.ground, scene.ground.brick, scene.case.material.locked_in
+    ground, brick, locked_in = scene.stepped_ground, scene.ground.brick, scene.case.material.locked_in
     bonds = CutBonds.of(ground, cut, body.positions)
     per_stress = _per_stress(ground, bonds)
     as_built = np.zeros(per_stress.shape[:2])
@@ -166,7 +166,7 @@ def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndar
         constants = brick_constants(ground, gaps_close=False, locked_in=share)[cut.contact_type]
         overlap = np.maximum(constants[:, K.touch] - constants[:, K.rest], 0.0)
         as_built[:2] = -constants[:, K.kn] * overlap * bonds.normal
-        as_built -= per_stress @ (share * ground.moduli.emod * brick.stress)
+        as_built -= per_stress @ (share * ground.contact_modulus * brick.stress)
     return per_stress, as_built
 
 

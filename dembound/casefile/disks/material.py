@@ -318,10 +318,13 @@ class MaterialTable(Table):
 
     def _problems_with_quality(self) -> list[str]:
         """What damping by a quality factor does not go with."""
-        problems = []
-        if LAWS[self.law].has_history:
-            why = f'contacts slide and open and bonds break under law = "{self.law}"'
-            problems.append(f'quality_factor: is for ground without cracks, but {why}; give law = "elastic"')
+        problems, law = [], LAWS[self.law]
+        if law.has_history and not law.relaxes:
+            problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
+        if law.has_history and (none := self._no_bonds):
+            problems.append(f"quality_factor: is of bonds under law = \"{self.law}\", but {none} leaves none")
+        if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
+            problems.append("elastic_start: is true, but bonds are damped from the start (quality_factor); leave it out")
         if self.damp > 0.0:
             problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
         return problems
@@ -333,11 +336,15 @@ class MaterialTable(Table):
             problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
         if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
             problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
-        no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
-        if no_bonds:
+        if none := self._no_bonds:
             given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]
-            problems += [f"{key}: is the strength of bonds, but {no_bonds} leaves none" for key in given]
+            problems += [f"{key}: is the strength of bonds, but {none} leaves none" for key in given]
         return problems
+
+    @property
+    def _no_bonds(self) -> str | None:
+        """The key that leaves no bonds, with its value; None with bonds."""
+        return "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
 
 
 if TYPE_CHECKING:

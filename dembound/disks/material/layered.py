@@ -88,6 +88,14 @@ class LayeredGround(PackedMaterial):
         """The materials of its layers, from the surface down, without corrections."""
         return tuple(zone.material for zone in reversed(self.layers))
 
+    @property
+    def relaxed(self) -> LayeredGround:
+        """The ground with the springs that it has at rest, without the forces of damping."""
+        zones, layers = (
+            tuple(zone._replace(material=zone.material.relaxed) for zone in some) for some in (self.zones, self.layers)
+        )
+        return replace(self, is_relaxed=True, zones=zones, layers=layers)
+
     def zone_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the zone, from the bottom, of disks at heights (n,) m."""
         return _number(self.zones, self._rounding, heights)
