@@ -35,7 +35,16 @@ from dembound.kernels.law import finish as finish_law
 from dembound.kernels.law import is_law
 from dembound.kernels.law import move as move_law
 from dembound.kernels.law import push as push_law
-from dembound.kernels.pair_law import bond, bond_energy, breaks, contact_energy, normal, shear_of, stored_between
+from dembound.kernels.pair_law import (
+    bond,
+    bond_energy,
+    breaks,
+    contact_energy,
+    most_shear,
+    normal,
+    shear_of,
+    stored_between,
+)
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
 from dembound.kernels.tables import Relaxing
 from dembound.pairwise import P
@@ -51,6 +60,18 @@ def _springs_energy(limits, constants, k, stretch, shear, turn):
     if constants[k, P.touch] >= constants[k, P.rest]:
         energy += contact_energy(limits, constants, k, stretch, shear)
     return energy
+
+
+@njit(**FAST, inline="always")
+def _not_held(limits, constants, k, overlap, shear, slip, pull, side):
+    """What a contact cannot hold of its share of the forces of arms, `pull` and `side`, so that its bond does."""
+    push, held = 0.0, 0.0
+    if overlap > 0.0:
+        push = normal(limits, constants, k, overlap)
+        held = shear_of(limits, constants, k, overlap, shear, slip)
+    with_arms = max(push - pull, 0.0)
+    most = most_shear(limits, k, with_arms)
+    return (pull - push) + with_arms, (held + side) - min(max(held + side, 0.0 - most), most)
 
 
 @njit(**FAST, forceinline=True)
@@ -88,10 +109,17 @@ def _relax_pair(c, u, v, step, number, contacts, limits, arms, lost):
     turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
     Fn, Fs, M = bond(limits, constants, k, stretch, shear, turn)
     An, As, Am = bond(limits, constants, k, pulled, sheared, bent)
-    torn, cut = breaks(limits, constants, k, k, factor_of(limits.factor, c), Fn + An, Fs + As, M + Am)
+    Cn, Cs = 0.0, 0.0
     if constants[k, P.touch] >= constants[k, P.rest]:
-        An -= normal(limits, constants, k, 0.0 - pulled)
-        As += shear_of(limits, constants, k, 0.0, sheared, 0.0)
+        Cn = 0.0 - normal(limits, constants, k, 0.0 - pulled)
+        Cs = shear_of(limits, constants, k, 0.0, sheared, 0.0)
+    overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
+    slip = contacts.slip[c]
+    more_pull, more_shear = _not_held(limits, constants, k, overlap, shear, slip, Cn, Cs)
+    factor = factor_of(limits.factor, c)
+    torn, cut = breaks(limits, constants, k, k, factor, Fn + (An + more_pull), Fs + (As + more_shear), M + Am)
+    An += Cn
+    As += Cs
     if (torn or cut) and contacts.kept[c] != MAY_BREAK:
         torn = cut = False
         contacts.kept[c] = REACHED
@@ -104,7 +132,6 @@ def _relax_pair(c, u, v, step, number, contacts, limits, arms, lost):
         contacts.closed[c] = CLOSED  # so that the next step looks at it
         broken = stored + 0.5 * (Fn * (stretch - opened) + Fs * (shear - slid) + M * (turn - turned))
         broken -= 0.5 * (An * opened + As * slid + Am * turned)
-        overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
         if limits.geometry == BONDED:  # the contact changes to the updated geometry
             _, _, _, longer = updated_stretch(k, dx, dy, constants, began)
             later = max(overlap + stretch - longer, 0.0)
