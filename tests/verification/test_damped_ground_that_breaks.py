@@ -181,3 +181,34 @@ def test_strength_does_not_depend_on_the_rate(lab, motion):
     component = 0 if motion[0] > 0.0 else 1
     fast, slow = found["fast"][component], found["slow"][component]
     assert fast == pytest.approx(slow, rel=1e-3)
+
+
+def test_what_is_cut_off_flies_by_the_energy_of_its_bonds_alone(lab):
+    """A chain is pulled for 2 s, until the bond of its small first disk breaks, beside a disk that is free.
+
+    That disk is then driven by the bond that is left, and gets its energy at most. Memories of forces on it would push
+    on for as long as it was pulled.
+    """
+    radii, step, duration = np.array([0.2, 0.25, 0.25]), 2e-4, 2.4
+    places = np.array([[0.0, 0.0], [0.45, 0.0], [0.95, 0.0]])
+    material = {"law": "linearpbond", "emod": 1e9, "pb_emod": 1e9, "pb_ten": 2e5}
+    scene = lab.disks(places, radii, [(0, 1), (1, 2)], material=material)
+    grip, speed = SupportBuilder(), 1e-4
+    for component in range(3):
+        grip.add(np.array([0]), component, prescribed=True)
+        drive = speed if component == 0 else 0.0
+        grip.add(np.array([2]), component, drive=drive, signal=np.ones_like, prescribed=True)
+    scene = replace(scene, ground=replace(scene.ground, mechanisms=QUALITY), supports=grip.table())
+    simulation = Simulation(scene, step, np.zeros(0))
+    part = simulation.system.recorded_parts[-1]
+    stored, fastest, broken_at = [], 0.0, None
+    for number in range(round(duration / step)):
+        simulation.advance(1)
+        stored.append(part.stored(simulation.state.u))
+        if broken_at is None and len(simulation.system.contacts["body"].take_cracks()) > 0:
+            broken_at = number
+        elif broken_at is not None:
+            fastest = max(fastest, abs(float(simulation.state.velocity[0, 1])))
+    assert broken_at is not None and 1.5 < broken_at * step < 2.2
+    energy = sum(stored[broken_at - 2])
+    assert 0.05 * energy < 0.5 * scene.mass[1] * fastest**2 < energy
