@@ -7,34 +7,40 @@ a step, and stores ½w k_U a². Weights here are w/(1 − Σw), those of k_R. Co
 and slide as without damping. A bond breaks by its own forces, the share 1 − α of all springs and arms in tension and in
 shear, and all of the moment; its arms are gone with it, and the forces of what it held are those of its contact.
 
-The law itself steps contacts and bonds of the springs k_R, which never break there; after it arms are added, pair by
-pair, and bonds break.
+The law itself steps contacts and bonds of the springs k_R, which never break there; after it arms are added, to eight
+pairs at once (lanes.py), and bonds break, one by one. Names that functions share are those of pair_lanes.py.
 """
 
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import CHUNKS, FAST, MAKES, U, column_sum
-from dembound.kernels.compiler.limits import factor_of
-from dembound.kernels.compiler.separate import in_chunks
-from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.bonded import note_lost
-from dembound.kernels.contacts import (
-    BONDED,
-    CLOSED,
-    INTACT,
-    MAY_BREAK,
-    REACHED,
-    SHEAR,
-    TENSION,
-    note_places,
-)
+from dembound.kernels.common import CHUNKS, FAST, INLINED, MAKES, U, column_sum
+from dembound.kernels.compiler.lane_access import load, load_of, nth, store_some_of, where_equal
+from dembound.kernels.compiler.lanes import LANES, at_most, bits, byte_of, choose, larger, splat
+from dembound.kernels.compiler.limits import factor_of, factors_of
+from dembound.kernels.compiler.separate import apart, in_chunks
+from dembound.kernels.compiler.start_strain import began_with
+from dembound.kernels.contacts import BONDED, CLOSED, INTACT, MAY_BREAK, REACHED, SHEAR, TENSION, note_places
+from dembound.kernels.lane_step import next_place, place_of
 from dembound.kernels.law import begin as begin_law
 from dembound.kernels.law import check as check_law
 from dembound.kernels.law import finish as finish_law
-from dembound.kernels.law import is_law
+from dembound.kernels.law import generic, answer, is_law
 from dembound.kernels.law import move as move_law
 from dembound.kernels.law import push as push_law
+from dembound.kernels.pair_lanes import (
+    ALL,
+    TAKEN,
+    add_to,
+    apart_of,
+    begin_sums,
+    end_sums,
+    in_lanes,
+    reference,
+    slide_of,
+    updated,
+)
 from dembound.kernels.pair_law import (
     bond,
     bond_energy,
@@ -46,37 +52,51 @@ from dembound.kernels.pair_law import (
     stored_between,
 )
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
-from dembound.kernels.tables import Relaxing
+from dembound.kernels.tables import Bonded, LaneBonded, Relaxing
 from dembound.pairwise import P
 
 FADED = 1e-216
 """Lag (m) that is added and subtracted again, so that those much smaller become zero, see damped.FADED."""
 
+TILE = 128
+"""Pairs among which intact bonds are chosen at once."""
 
-@njit(**FAST, inline="always")
-def _springs_energy(limits, constants, k, stretch, shear, turn):
-    """Energy (J) of the bond and of the contact, if it was closed at the start, of a pair under a strain."""
-    energy = bond_energy(limits, constants, k, stretch, shear, turn)
-    if constants[k, P.touch] >= constants[k, P.rest]:
-        energy += contact_energy(limits, constants, k, stretch, shear)
-    return energy
+_INTACT = np.uint8(INTACT)
 
 
-@njit(**FAST, inline="always")
-def _not_held(limits, constants, k, overlap, shear, slip, pull, side):
-    """What a contact cannot hold of its share of the forces of arms, `pull` and `side`, so that its bond does."""
-    push, held = 0.0, 0.0
-    if overlap > 0.0:
-        push = normal(limits, constants, k, overlap)
-        held = shear_of(limits, constants, k, overlap, shear, slip)
-    with_arms = max(push - pull, 0.0)
-    most = most_shear(limits, k, with_arms)
-    return (pull - push) + with_arms, (held + side) - min(max(held + side, 0.0 - most), most)
+@njit(**INLINED)
+def _closed(constants, k):
+    """1 where a contact was closed at the start, so that arms have its share of springs, else 0; numbers or lanes."""
+    return choose(at_most(constants[k, P.rest], constants[k, P.touch]), 1.0, 0.0)
+
+
+@njit(**INLINED)
+def _springs_energy(limits, constants, k, closed, stretch, shear, turn):
+    """Energy (J) of the springs of all of a pair under a strain, numbers or lanes; closed : see `_closed`."""
+    of_contact = contact_energy(limits, constants, k, stretch, shear)
+    return bond_energy(limits, constants, k, stretch, shear, turn) + closed * of_contact
+
+
+@njit(**INLINED)
+def _with_contact(limits, constants, k, kind, closed, overlap, shear, slip, pulled, sheared):
+    """The share of a contact in the forces of arms, along and across, and what of it the contact cannot hold.
+
+    pulled, sheared : Σ of weighted lags. A contact cannot pull and slides, with this share as without it; its bond then
+    holds all of the pair's force. Numbers or lanes.
+    """
+    pull = 0.0 - closed * normal(limits, constants, k, 0.0 - pulled)
+    side = closed * shear_of(limits, constants, k, overlap, sheared, 0.0)
+    push = larger(normal(limits, constants, k, overlap), 0.0)
+    whole = side + choose(at_most(overlap, 0.0), 0.0, shear_of(limits, constants, k, overlap, shear, slip))
+    with_arms = larger(push - pull, 0.0)
+    most = most_shear(limits, kind, with_arms)
+    held = 0.0 - larger(0.0 - larger(whole, 0.0 - most), 0.0 - most)
+    return pull, side, (pull - push) + with_arms, whole - held
 
 
 @njit(**FAST, forceinline=True)
-def _relax_pair(c, u, v, step, number, contacts, limits, arms, lost):
-    """Add the forces of the arms of pair c, whose bond is intact, to those of its springs, unless it breaks."""
+def _break_pair(c, u, v, step, number, contacts, limits, arms, lost):
+    """Break the bond of pair c, whose lags are those of this step, or add the forces of its arms if it may not."""
     constants, began, lag, force = contacts.constants, contacts.began, contacts.lag, contacts.force
     i, j, k, dx, dy = pair(c, u, contacts.first, contacts.second, contacts.contact_type, constants)
     if limits.geometry == BONDED:
@@ -87,39 +107,26 @@ def _relax_pair(c, u, v, step, number, contacts, limits, arms, lost):
     opened = step * (nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i]))
     slid = step * slide(i, j, k, nx, ny, distance, v, constants)
     turned = step * (v[U(2), j] - v[U(2), i])
-    count = arms.decay.shape[1]
-    pulled, sheared, bent = 0.0, 0.0, 0.0
-    taken, stored = 0.0, 0.0
+    closed, count = _closed(constants, k), arms.decay.shape[1]
+    pulled, sheared, bent, stored = 0.0, 0.0, 0.0, 0.0
     for each in range(count):
-        m, s, t = U(each), U(count + each), U(2 * count + each)
-        e, weight = arms.decay[k, m], arms.weight[k, m]
-        a, b, g = lag[m, c], lag[s, c], lag[t, c]
-        middle = _springs_energy(limits, constants, k, a + 0.5 * opened, b + 0.5 * slid, g + 0.5 * turned)
-        taken += weight * (1.0 - e * e) * middle
-        half = 0.5 * (1.0 + e)
-        a = (e * a + (half * opened + FADED)) - FADED
-        b = (e * b + (half * slid + FADED)) - FADED
-        g = (e * g + (half * turned + FADED)) - FADED
-        lag[m, c], lag[s, c], lag[t, c] = a, b, g
-        stored += weight * _springs_energy(limits, constants, k, a, b, g)
+        a, b, g = lag[U(each), c], lag[U(count + each), c], lag[U(2 * count + each), c]
+        weight = arms.weight[k, U(each)]
+        stored += weight * _springs_energy(limits, constants, k, closed, a, b, g)
         pulled += weight * a
         sheared += weight * b
         bent += weight * g
-    lost[4] += taken
     turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
     Fn, Fs, M = bond(limits, constants, k, stretch, shear, turn)
     An, As, Am = bond(limits, constants, k, pulled, sheared, bent)
-    Cn, Cs = 0.0, 0.0
-    if constants[k, P.touch] >= constants[k, P.rest]:
-        Cn = 0.0 - normal(limits, constants, k, 0.0 - pulled)
-        Cs = shear_of(limits, constants, k, 0.0, sheared, 0.0)
     overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
-    slip = contacts.slip[c]
-    more_pull, more_shear = _not_held(limits, constants, k, overlap, shear, slip, Cn, Cs)
+    pull, side, more, across = _with_contact(
+        limits, constants, k, k, closed, overlap, shear, contacts.slip[c], pulled, sheared
+    )
     factor = factor_of(limits.factor, c)
-    torn, cut = breaks(limits, constants, k, k, factor, Fn + (An + more_pull), Fs + (As + more_shear), M + Am)
-    An += Cn
-    As += Cs
+    torn, cut = breaks(limits, constants, k, k, factor, Fn + (An + more), Fs + (As + across), M + Am)
+    An += pull
+    As += side
     if (torn or cut) and contacts.kept[c] != MAY_BREAK:
         torn = cut = False
         contacts.kept[c] = REACHED
@@ -140,31 +147,172 @@ def _relax_pair(c, u, v, step, number, contacts, limits, arms, lost):
         lost[3] += 1.0
         for each in range(3 * count):
             lag[U(each), c] = 0.0
-        if overlap <= 0.0:  # its contact is open
-            for each in range(4):
-                force[U(each), c] = 0.0
-            return
         An, As, Am = 0.0 - Fn, 0.0 - Fs, 0.0 - M
-    force[U(0), c] += An * nx - As * ny
-    force[U(1), c] += An * ny + As * nx
-    force[U(2), c] += arm_i * As + Am
-    force[U(3), c] += arm_j * As - Am
+    if (torn or cut) and overlap <= 0.0:  # its contact is open
+        for each in range(4):
+            force[U(each), c] = 0.0
+    else:
+        force[U(0), c] += An * nx - As * ny
+        force[U(1), c] += An * ny + As * nx
+        force[U(2), c] += arm_i * As + Am
+        force[U(3), c] += arm_j * As - Am
+
+
+@apart()
+@njit(**FAST)
+def break_each(pairs, u, v, step, number, contacts, limits, arms, lost):
+    """Break the bonds of some pairs (k,) uint32, one by one, see `_break_pair`; lost (5,) is advanced."""
+    for k in range(pairs.size):
+        _break_pair(U(pairs[k]), u, v, step, number, contacts, limits, arms, lost)
+
+
+@njit(**INLINED)
+def _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken, breaking):
+    """Add the forces of arms of eight pairs; breaking (9,) uint32 gets those whose bonds may break."""
+    (k, began, q, kind, _), (c, i, j) = law, at
+    intact = np.uint8(byte_of(where_equal(contacts.state, c, _INTACT)) & exists)
+    if intact == 0:
+        return
+    if limits.geometry == BONDED:
+        one, other, stretch, shear = reference(law, at, way, u)
+        nx, ny, arm_i, arm_j = in_lanes(way[0]), in_lanes(way[1]), in_lanes(one), in_lanes(other)
+        sliding = slide_of((nx, ny), (arm_i, arm_j), at, v)
+    else:  # the shear is already that of this step
+        nx, ny, arm_i, arm_j, stretch, shear, sliding = updated(law, at, u, v, 0.0, contacts)
+    dvx, dvy = apart_of(v, at)
+    opened, slid = step * (nx * dvx + ny * dvy), step * sliding
+    turned = step * (load_of(v, U(2), j) - load_of(v, U(2), i))
+    lag, closed, count = contacts.lag, _closed(k, q), arms.decay.shape[1]
+    pulled, sheared, bent, loss = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
+    for each in range(count):
+        m, s, t = U(each), U(count + each), U(2 * count + each)
+        e, weight = arms.decay[kind, m], arms.weight[kind, m]
+        a, b, g = load_of(lag, m, c), load_of(lag, s, c), load_of(lag, t, c)
+        middle = _springs_energy(limits, k, q, closed, a + 0.5 * opened, b + 0.5 * slid, g + 0.5 * turned)
+        loss += weight * (1.0 - e * e) * middle
+        half = 0.5 * (1.0 + e)
+        a = (e * a + (half * opened + FADED)) - FADED
+        b = (e * b + (half * slid + FADED)) - FADED
+        g = (e * g + (half * turned + FADED)) - FADED
+        store_some_of(lag, m, c, a, intact)
+        store_some_of(lag, s, c, b, intact)
+        store_some_of(lag, t, c, g, intact)
+        pulled += weight * a
+        sheared += weight * b
+        bent += weight * g
+    add_to(taken, 2 * LANES, choose(bits(intact), loss, 0.0))
+    turn = load_of(u, U(2), j) - load_of(u, U(2), i) + began_with(began, q, U(2))
+    Fn, Fs, M = bond(limits, k, q, stretch, shear, turn)
+    An, As, Am = bond(limits, k, q, pulled, sheared, bent)
+    overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
+    slip = load(contacts.slip, c)
+    pull, side, more, across = _with_contact(limits, k, q, kind, closed, overlap, shear, slip, pulled, sheared)
+    factor = factors_of(limits.factor, c)
+    torn, cut = breaks(limits, k, q, kind, factor, Fn + (An + more), Fs + (As + across), M + Am)
+    broken = np.uint8((byte_of(torn) | byte_of(cut)) & intact)
+    if broken != 0:
+        for each in range(LANES):
+            if broken & np.uint8(1 << each):
+                breaking[0] += 1
+                breaking[breaking[0]] = nth(c, U(each))
+        intact = np.uint8(intact & ~broken)
+    An += pull
+    As += side
+    force = contacts.force
+    store_some_of(force, U(0), c, load_of(force, U(0), c) + (An * nx - As * ny), intact)
+    store_some_of(force, U(1), c, load_of(force, U(1), c) + (An * ny + As * nx), intact)
+    store_some_of(force, U(2), c, load_of(force, U(2), c) + (arm_i * As + Am), intact)
+    store_some_of(force, U(3), c, load_of(force, U(3), c) + (arm_j * As - Am), intact)
+
+
+@njit(**FAST, forceinline=True)  # see pair_lanes._push_blocks
+def _relax_singles(chunk, acting, u, v, step, number, contacts, limits, arms, taken, breaking, lost):
+    """The bonds of a chunk that are in no row; acting (TILE + LANES,) uint32 is work space."""
+    begin_sums(taken, lost)
+    first, last = contacts.bound[chunk], contacts.bound[chunk + 1]
+    while first < last:
+        waiting, stop = 0, min(first + TILE, last)
+        for p in range(first, stop):
+            acting[U(waiting)] = p
+            waiting += int(contacts.state[U(p)] == INTACT)
+        first = stop
+        for k in range(LANES):  # the last eight are filled up
+            acting[U(waiting + k)] = acting[U(max(waiting - 1, 0))]
+        for done in range(0, waiting, LANES):
+            exists = ALL if waiting - done >= LANES else np.uint8((1 << (waiting - done)) - 1)
+            c = load(acting, U(done))
+            q, k = load(contacts.contact_type, c), contacts.constants
+            law, at = (k, contacts.began, q, q, True), (c, load(contacts.first, c), load(contacts.second, c))
+            way = k[q, P.x] / k[q, P.rest], k[q, P.y] / k[q, P.rest]
+            _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken, breaking)
+            if breaking[0] != 0:
+                break_each(breaking[1 : 1 + breaking[0]], u, v, step, number, contacts, limits, arms, lost)
+                breaking[0] = 0
+    end_sums(taken, lost)
 
 
 @in_chunks
-@njit(**FAST)
-def _relax(begin, end, u, v, step, number, contacts, limits, arms):
-    """Arms of all intact bonds; arms.lost (chunks, 5) receives what they take, see `single_pairs.push`."""
-    state, bound, lost = contacts.state, contacts.bound, arms.lost
-    in_rows = bound[0]
+@njit(**MAKES)
+def _relax_all_singles(first_chunk, last_chunk, u, v, step, number, contacts, limits, arms, lost):
+    taken, acting = np.empty(TAKEN), np.empty(TILE + LANES, np.uint32)
+    breaking = np.zeros(1 + LANES, np.uint32)
+    for chunk in range(first_chunk, last_chunk):
+        _relax_singles(chunk, acting, u, v, step, number, contacts, limits, arms, taken, breaking, lost[chunk])
+
+
+@njit(**FAST, forceinline=True)
+def _relax_blocks(pairs, first, last, u, v, step, number, contacts, limits, arms, taken, breaking, lost):
+    """The bonds in blocks first to last − 1 of the rows of copies."""
+    begin_sums(taken, lost)
+    if first == last:
+        return
+    group, column, q = place_of(pairs, first)
+    for block in range(first, last):
+        if block > first:
+            group, column, q = next_place(pairs, block, group, column, q)
+        row, exists = U(q), pairs.exists[U(block)]
+        if exists != 0:
+            disks = pairs.disk_block[U(group)] + column * pairs.disk_rows[U(group)] + pairs.step[row, U(0)]
+            i = U(LANES * disks)
+            at = U(LANES * block), i, i + U(pairs.step[row, U(1)])
+            law = pairs.constants, pairs.began, row, U(pairs.contact_type[row]), True
+            way = pairs.way[row, U(0)], pairs.way[row, U(1)]
+            _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken, breaking)
+            if breaking[0] != 0:
+                break_each(breaking[1 : 1 + breaking[0]], u, v, step, number, contacts, limits, arms, lost)
+                breaking[0] = 0
+    end_sums(taken, lost)
+
+
+@in_chunks
+@njit(**MAKES)
+def _relax_rows(begin, end, u, v, step, number, pairs, contacts, limits, arms, lost):
+    n = pairs.exists.size
+    taken, breaking = np.empty(TAKEN), np.zeros(1 + LANES, np.uint32)
     for chunk in range(begin, end):
-        lost[chunk] = 0.0
-        first_in_rows = chunk * in_rows // CHUNKS
-        count = (chunk + 1) * in_rows // CHUNKS - first_in_rows
-        for p in range(count + bound[chunk + 1] - bound[chunk]):
-            c = U(first_in_rows + p) if p < count else U(bound[chunk] + p - count)
-            if state[c] == INTACT:
-                _relax_pair(c, u, v, step, number, contacts, limits, arms, lost[chunk])
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _relax_blocks(pairs, first, last, u, v, step, number, contacts, limits, arms, taken, breaking, lost[chunk])
+
+
+@generic
+def relax(law, u, v, step, number, limits, arms, work):
+    """Add the forces of arms to those of the law's pairs; returns the number of bonds that broke."""
+
+
+@njit(**FAST)
+def _relax(law, u, v, step, number, limits, arms, work):
+    contacts = law.contacts
+    _relax_all_singles(u, v, step, number, contacts, limits, arms, arms.lost)
+    note_lost(arms.lost, work)
+    return int(column_sum(arms.lost, 3))
+
+
+@njit(**FAST)
+def _relax_with_rows(law, u, v, step, number, limits, arms, work):
+    breaks = _relax(law.bonded, u, v, step, number, limits, arms, work)
+    _relax_rows(u, v, step, number, law.pairs, law.bonded.contacts, limits, arms, arms.lost)
+    note_lost(arms.lost, work)
+    return breaks + int(column_sum(arms.lost, 3))
 
 
 @njit(**MAKES)
@@ -189,9 +337,10 @@ def _arms_energies(begin, end, contacts, limits, arms, stored):
             c = U(first_in_rows + p) if p < count else U(bound[chunk] + p - count)
             if contacts.state[c] == INTACT:
                 k = U(contacts.contact_type[c])
+                closed = _closed(constants, k)
                 for each in range(arm_count):
                     a, b, g = lag[U(each), c], lag[U(arm_count + each), c], lag[U(2 * arm_count + each), c]
-                    energy += arms.weight[k, U(each)] * _springs_energy(limits, constants, k, a, b, g)
+                    energy += arms.weight[k, U(each)] * _springs_energy(limits, constants, k, closed, a, b, g)
         stored[chunk, 0] = energy
 
 
@@ -211,12 +360,9 @@ def check(relaxing, u, u_next, v):
 def push(relaxing, u, u_next, v, number, step, work):
     """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
     push_law(relaxing.law, u, u_next, v, number, step, work)
-    contacts, arms = relaxing.bonded.contacts, relaxing.arms
-    _relax(u, v, step, number, contacts, relaxing.limits, arms)
-    breaks = int(column_sum(arms.lost, 3))
+    breaks = relax(relaxing.law, u, v, step, number, relaxing.limits, relaxing.arms, work)
     if breaks > 0:
-        note_places(u, number, contacts)
-    note_lost(arms.lost, work)
+        note_places(u, number, relaxing.bonded.contacts)
     return breaks if relaxing.stops else 0
 
 
@@ -232,4 +378,6 @@ def finish(relaxing, v, body, nodes, work):
     finish_law(relaxing.law, v, body, nodes, work)
 
 
+answer(relax, Bonded, _relax)
+answer(relax, LaneBonded, _relax_with_rows)
 is_law(Relaxing, begin=begin, check=check, push=push, move=move, finish=finish)
