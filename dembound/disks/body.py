@@ -317,17 +317,6 @@ class DiskBody(Scene):
         return self.ground.law.has_history
 
 
-    @property
-    def relaxes(self) -> bool:
-        """Whether intact bonds have relaxation arms, by which ground that can break is damped."""
-        return self.has_history and self.ground.is_damped
-
-    @cached_property
-    def stepped_ground(self) -> PackedMaterial:
-        """The ground with the springs of its disks as they are stepped: those at rest where bonds have arms."""
-        return self.ground.relaxed if self.relaxes else self.ground
-
-
 COLUMNS = ("column", "right_column")
 """The names of the parts that are free-field columns."""
 

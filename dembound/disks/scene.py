@@ -213,7 +213,7 @@ def _scene(
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
         assembly,
-        ground.relaxed if ground.law.has_history and ground.is_damped else ground,
+        ground.stepped,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
         _levels(case, ground, assembly, seams, surface),

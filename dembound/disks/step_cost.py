@@ -46,7 +46,7 @@ def slower(scene: DiskScene) -> Slower | None:
     if not scene.has_history:
         return None
     case, begun = scene.case, sum(times_of_scene(scene).values())
-    first = begun - (time_per_disk(scene) - _time_per_disk(scene, not case.material.begins_elastic)) * scene.disk_count
+    first = begun - (time_per_disk(scene) - _time_per_disk(scene, not case.begins_elastic)) * scene.disk_count
     breaks, bonded = can_break(case.materials), all(each.moduli.pb_emod > 0.0 for each in scene.ground.materials)
     if bonded and not breaks:
         return Slower("once contacts open or slide", first, begun) if first < begun else None

@@ -4,8 +4,9 @@ Beside the springs k_R that a pair has at rest, an intact bond has K arms with t
 k_R = k_U(1 − Σw): F = k_R d + Σ w k_U a, for its stretch, its shear and its rotation d alike. An arm lags behind,
 a ← e a + ½(1 + e)Δd, with e = exp(−Δt/τ) and Δd by the velocities of the step. It takes ½w k_U(a + ½Δd)²(1 − e²) ≥ 0 in
 a step, and stores ½w k_U a². Weights here are w/(1 − Σw), those of k_R. Contacts have no arms: they are αk_R, and open
-and slide as without damping. A bond breaks by its own forces, the share 1 − α of all springs and arms in tension and in
-shear, and all of the moment; its arms are gone with it, and the forces of what it held are those of its contact.
+and slide as without damping. A bond breaks by its own forces: the share 1 − α of all springs and arms in tension and in
+shear, with what its contact cannot hold of the share α of the arms, as it is open or slides, and all of the moment. So
+a pair breaks under the same force at any rate. The arms of a bond are gone with it.
 
 The law itself steps contacts and bonds of the springs k_R, which never break there; after it arms are added, to eight
 pairs at once (lanes.py), and bonds break, one by one. Names that functions share are those of pair_lanes.py.
@@ -21,14 +22,9 @@ from dembound.kernels.compiler.lanes import LANES, at_most, bits, byte_of, choos
 from dembound.kernels.compiler.limits import factor_of, factors_of
 from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
-from dembound.kernels.contacts import BONDED, CLOSED, INTACT, MAY_BREAK, REACHED, SHEAR, TENSION, note_places
+from dembound.kernels.contacts import BONDED, CLOSED, INTACT, MAY_BREAK, REACHED, SHEAR, TENSION
 from dembound.kernels.lane_step import next_place, place_of
-from dembound.kernels.law import begin as begin_law
-from dembound.kernels.law import check as check_law
-from dembound.kernels.law import finish as finish_law
-from dembound.kernels.law import generic, answer, is_law
-from dembound.kernels.law import move as move_law
-from dembound.kernels.law import push as push_law
+from dembound.kernels.law import answer, generic
 from dembound.kernels.pair_lanes import (
     ALL,
     TAKEN,
@@ -43,55 +39,52 @@ from dembound.kernels.pair_lanes import (
 )
 from dembound.kernels.pair_law import (
     bond,
-    bond_energy,
     breaks,
-    contact_energy,
     most_shear,
     normal,
     shear_of,
     stored_between,
 )
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_stretch
-from dembound.kernels.tables import Bonded, LaneBonded, Relaxing
+from dembound.kernels.tables import Bonded, LaneBonded
 from dembound.pairwise import P
 
 FADED = 1e-216
 """Lag (m) that is added and subtracted again, so that those much smaller become zero, see damped.FADED."""
 
-TILE = 128
-"""Pairs among which intact bonds are chosen at once."""
-
 _INTACT = np.uint8(INTACT)
 
 
 @njit(**INLINED)
-def _closed(constants, k):
-    """1 where a contact was closed at the start, so that arms have its share of springs, else 0; numbers or lanes."""
-    return choose(at_most(constants[k, P.rest], constants[k, P.touch]), 1.0, 0.0)
+def springs_of(limits, constants, k):
+    """Stiffnesses of a bond against stretch, shear and rotation, and of its contact, numbers or lanes.
 
-
-@njit(**INLINED)
-def _springs_energy(limits, constants, k, closed, stretch, shear, turn):
-    """Energy (J) of the springs of all of a pair under a strain, numbers or lanes; closed : see `_closed`."""
-    of_contact = contact_energy(limits, constants, k, stretch, shear)
-    return bond_energy(limits, constants, k, stretch, shear, turn) + closed * of_contact
-
-
-@njit(**INLINED)
-def _with_contact(limits, constants, k, kind, closed, overlap, shear, slip, pulled, sheared):
-    """The share of a contact in the forces of arms, along and across, and what of it the contact cannot hold.
-
-    pulled, sheared : Σ of weighted lags. A contact cannot pull and slides, with this share as without it; its bond then
-    holds all of the pair's force. Numbers or lanes.
+    Those of contacts that were open at the start are 0: arms have no share of them.
     """
-    pull = 0.0 - closed * normal(limits, constants, k, 0.0 - pulled)
-    side = closed * shear_of(limits, constants, k, overlap, sheared, 0.0)
-    push = larger(normal(limits, constants, k, overlap), 0.0)
-    whole = side + choose(at_most(overlap, 0.0), 0.0, shear_of(limits, constants, k, overlap, shear, slip))
+    of_bond = bond(limits, constants, k, 1.0, 1.0, 1.0)
+    closed = choose(at_most(constants[k, P.rest], constants[k, P.touch]), 1.0, 0.0)
+    along = 0.0 - closed * normal(limits, constants, k, 0.0 - 1.0)
+    return of_bond, (along, closed * shear_of(limits, constants, k, 0.0, 1.0, 0.0))
+
+
+@njit(**INLINED)
+def energy_of(springs, stretch, shear, turn):
+    """Energy (J) of the springs of all of a pair under a strain, numbers or lanes."""
+    (n, s, t), (contact_n, contact_s) = springs
+    return 0.5 * ((n + contact_n) * stretch * stretch + (s + contact_s) * shear * shear + t * turn * turn)
+
+
+@njit(**INLINED)
+def _not_held(limits, kind, push, shared, pull, side):
+    """What a contact cannot hold of its share `pull` and `side` of the forces of arms, so that its bond does.
+
+    push, shared : N, of the contact without arms. It cannot pull and slides, with its share as without it; then the
+    bond holds all of the pair's force. Numbers or lanes.
+    """
     with_arms = larger(push - pull, 0.0)
-    most = most_shear(limits, kind, with_arms)
+    most, whole = most_shear(limits, kind, with_arms), shared + side
     held = 0.0 - larger(0.0 - larger(whole, 0.0 - most), 0.0 - most)
-    return pull, side, (pull - push) + with_arms, whole - held
+    return (pull - push) + with_arms, whole - held
 
 
 @njit(**FAST, forceinline=True)
@@ -107,22 +100,26 @@ def _break_pair(c, u, v, step, number, contacts, limits, arms, lost):
     opened = step * (nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i]))
     slid = step * slide(i, j, k, nx, ny, distance, v, constants)
     turned = step * (v[U(2), j] - v[U(2), i])
-    closed, count = _closed(constants, k), arms.decay.shape[1]
+    springs, count, row = springs_of(limits, constants, k), arms.decay.shape[1], k % U(arms.decay.shape[0])
     pulled, sheared, bent, stored = 0.0, 0.0, 0.0, 0.0
     for each in range(count):
         a, b, g = lag[U(each), c], lag[U(count + each), c], lag[U(2 * count + each), c]
-        weight = arms.weight[k, U(each)]
-        stored += weight * _springs_energy(limits, constants, k, closed, a, b, g)
+        weight = arms.weight[row, U(each)]
+        stored += weight * energy_of(springs, a, b, g)
         pulled += weight * a
         sheared += weight * b
         bent += weight * g
     turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
-    Fn, Fs, M = bond(limits, constants, k, stretch, shear, turn)
-    An, As, Am = bond(limits, constants, k, pulled, sheared, bent)
     overlap = constants[k, P.touch] - constants[k, P.rest] - stretch
-    pull, side, more, across = _with_contact(
-        limits, constants, k, k, closed, overlap, shear, contacts.slip[c], pulled, sheared
-    )
+    (bond_n, bond_s, bond_t), (contact_n, contact_s) = springs
+    Fn, Fs, M = bond_n * stretch, bond_s * shear, bond_t * turn
+    push, shared = 0.0, 0.0
+    if overlap > 0.0:
+        push = normal(limits, constants, k, overlap)
+        shared = shear_of(limits, constants, k, overlap, shear, contacts.slip[c])
+    pull, side = contact_n * pulled, contact_s * sheared
+    more, across = _not_held(limits, k, push, shared, pull, side)
+    An, As, Am = bond_n * pulled, bond_s * sheared, bond_t * bent
     factor = factor_of(limits.factor, c)
     torn, cut = breaks(limits, constants, k, k, factor, Fn + (An + more), Fs + (As + across), M + Am)
     An += pull
@@ -182,13 +179,21 @@ def _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken
     dvx, dvy = apart_of(v, at)
     opened, slid = step * (nx * dvx + ny * dvy), step * sliding
     turned = step * (load_of(v, U(2), j) - load_of(v, U(2), i))
-    lag, closed, count = contacts.lag, _closed(k, q), arms.decay.shape[1]
+    turn = load_of(u, U(2), j) - load_of(u, U(2), i) + began_with(began, q, U(2))
+    overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
+    push, is_open = larger(normal(limits, k, q, overlap), 0.0), at_most(overlap, 0.0)
+    shared = choose(is_open, 0.0, shear_of(limits, k, q, overlap, shear, load(contacts.slip, c)))
+    springs, lag, count = springs_of(limits, k, q), contacts.lag, arms.decay.shape[1]
+    alike = arms.decay.shape[0] == 1
     pulled, sheared, bent, loss = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
     for each in range(count):
         m, s, t = U(each), U(count + each), U(2 * count + each)
-        e, weight = arms.decay[kind, m], arms.weight[kind, m]
+        if alike:
+            e, weight = splat(arms.decay[U(0), m]), splat(arms.weight[U(0), m])
+        else:
+            e, weight = in_lanes(arms.decay[kind, m]), in_lanes(arms.weight[kind, m])
         a, b, g = load_of(lag, m, c), load_of(lag, s, c), load_of(lag, t, c)
-        middle = _springs_energy(limits, k, q, closed, a + 0.5 * opened, b + 0.5 * slid, g + 0.5 * turned)
+        middle = energy_of(springs, a + 0.5 * opened, b + 0.5 * slid, g + 0.5 * turned)
         loss += weight * (1.0 - e * e) * middle
         half = 0.5 * (1.0 + e)
         a = (e * a + (half * opened + FADED)) - FADED
@@ -201,14 +206,13 @@ def _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken
         sheared += weight * b
         bent += weight * g
     add_to(taken, 2 * LANES, choose(bits(intact), loss, 0.0))
-    turn = load_of(u, U(2), j) - load_of(u, U(2), i) + began_with(began, q, U(2))
-    Fn, Fs, M = bond(limits, k, q, stretch, shear, turn)
-    An, As, Am = bond(limits, k, q, pulled, sheared, bent)
-    overlap = (k[q, P.touch] - k[q, P.rest]) - stretch
-    slip = load(contacts.slip, c)
-    pull, side, more, across = _with_contact(limits, k, q, kind, closed, overlap, shear, slip, pulled, sheared)
+    (bond_n, bond_s, bond_t), (contact_n, contact_s) = springs
+    pull, side = contact_n * pulled, contact_s * sheared
+    more, across = _not_held(limits, kind, push, shared, pull, side)
+    An, As, Am = bond_n * pulled, bond_s * sheared, bond_t * bent
     factor = factors_of(limits.factor, c)
-    torn, cut = breaks(limits, k, q, kind, factor, Fn + (An + more), Fs + (As + across), M + Am)
+    tension, across = bond_n * stretch + (An + more), bond_s * shear + (As + across)
+    torn, cut = breaks(limits, k, q, kind, factor, tension, across, bond_t * turn + Am)
     broken = np.uint8((byte_of(torn) | byte_of(cut)) & intact)
     if broken != 0:
         for each in range(LANES):
@@ -226,38 +230,29 @@ def _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken
 
 
 @njit(**FAST, forceinline=True)  # see pair_lanes._push_blocks
-def _relax_singles(chunk, acting, u, v, step, number, contacts, limits, arms, taken, breaking, lost):
-    """The bonds of a chunk that are in no row; acting (TILE + LANES,) uint32 is work space."""
+def _relax_singles(first, last, u, v, step, number, contacts, limits, arms, taken, breaking, lost):
+    """The bonds of pairs first to last − 1, which are in no row."""
     begin_sums(taken, lost)
-    first, last = contacts.bound[chunk], contacts.bound[chunk + 1]
-    while first < last:
-        waiting, stop = 0, min(first + TILE, last)
-        for p in range(first, stop):
-            acting[U(waiting)] = p
-            waiting += int(contacts.state[U(p)] == INTACT)
-        first = stop
-        for k in range(LANES):  # the last eight are filled up
-            acting[U(waiting + k)] = acting[U(max(waiting - 1, 0))]
-        for done in range(0, waiting, LANES):
-            exists = ALL if waiting - done >= LANES else np.uint8((1 << (waiting - done)) - 1)
-            c = load(acting, U(done))
-            q, k = load(contacts.contact_type, c), contacts.constants
-            law, at = (k, contacts.began, q, q, True), (c, load(contacts.first, c), load(contacts.second, c))
-            way = k[q, P.x] / k[q, P.rest], k[q, P.y] / k[q, P.rest]
-            _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken, breaking)
-            if breaking[0] != 0:
-                break_each(breaking[1 : 1 + breaking[0]], u, v, step, number, contacts, limits, arms, lost)
-                breaking[0] = 0
+    for begin in range(first, last, LANES):
+        exists = ALL if last - begin >= LANES else np.uint8((1 << (last - begin)) - 1)
+        c, k = U(begin), contacts.constants
+        q = load(contacts.contact_type, c)
+        law, at = (k, contacts.began, q, q, True), (c, load(contacts.first, c), load(contacts.second, c))
+        way = k[q, P.x] / k[q, P.rest], k[q, P.y] / k[q, P.rest]
+        _relax_eight(law, at, exists, way, u, v, step, contacts, limits, arms, taken, breaking)
+        if breaking[0] != 0:
+            break_each(breaking[1 : 1 + breaking[0]], u, v, step, number, contacts, limits, arms, lost)
+            breaking[0] = 0
     end_sums(taken, lost)
 
 
 @in_chunks
 @njit(**MAKES)
-def _relax_all_singles(first_chunk, last_chunk, u, v, step, number, contacts, limits, arms, lost):
-    taken, acting = np.empty(TAKEN), np.empty(TILE + LANES, np.uint32)
-    breaking = np.zeros(1 + LANES, np.uint32)
-    for chunk in range(first_chunk, last_chunk):
-        _relax_singles(chunk, acting, u, v, step, number, contacts, limits, arms, taken, breaking, lost[chunk])
+def _relax_all_singles(begin, end, u, v, step, number, contacts, limits, arms, lost):
+    taken, breaking = np.empty(TAKEN), np.zeros(1 + LANES, np.uint32)
+    for chunk in range(begin, end):
+        first, last = contacts.bound[chunk], contacts.bound[chunk + 1]
+        _relax_singles(first, last, u, v, step, number, contacts, limits, arms, taken, breaking, lost[chunk])
 
 
 @njit(**FAST, forceinline=True)
@@ -315,69 +310,5 @@ def _relax_with_rows(law, u, v, step, number, limits, arms, work):
     return breaks + int(column_sum(arms.lost, 3))
 
 
-@njit(**MAKES)
-def arms_energy(contacts, limits, arms):
-    """Energy (J) stored in the arms of all intact bonds."""
-    stored = np.empty((CHUNKS, 1))
-    _arms_energies(contacts, limits, arms, stored)
-    return column_sum(stored, 0)
-
-
-@in_chunks
-@njit(**FAST)
-def _arms_energies(begin, end, contacts, limits, arms, stored):
-    """Fill stored (chunks, 1) with the energy in the arms of each chunk of pairs."""
-    bound, lag, constants = contacts.bound, contacts.lag, contacts.constants
-    in_rows, arm_count = bound[0], arms.decay.shape[1]
-    for chunk in range(begin, end):
-        energy = 0.0
-        first_in_rows = chunk * in_rows // CHUNKS
-        count = (chunk + 1) * in_rows // CHUNKS - first_in_rows
-        for p in range(count + bound[chunk + 1] - bound[chunk]):
-            c = U(first_in_rows + p) if p < count else U(bound[chunk] + p - count)
-            if contacts.state[c] == INTACT:
-                k = U(contacts.contact_type[c])
-                closed = _closed(constants, k)
-                for each in range(arm_count):
-                    a, b, g = lag[U(each), c], lag[U(arm_count + each), c], lag[U(2 * arm_count + each), c]
-                    energy += arms.weight[k, U(each)] * _springs_energy(limits, constants, k, closed, a, b, g)
-        stored[chunk, 0] = energy
-
-
-@njit(**FAST)
-def begin(relaxing):
-    """See law.begin."""
-    begin_law(relaxing.law)
-
-
-@njit(**FAST)
-def check(relaxing, u, u_next, v):
-    """See law.check."""
-    return check_law(relaxing.law, u, u_next, v)
-
-
-@njit(**FAST)
-def push(relaxing, u, u_next, v, number, step, work):
-    """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
-    push_law(relaxing.law, u, u_next, v, number, step, work)
-    breaks = relax(relaxing.law, u, v, step, number, relaxing.limits, relaxing.arms, work)
-    if breaks > 0:
-        note_places(u, number, relaxing.bonded.contacts)
-    return breaks if relaxing.stops else 0
-
-
-@njit(**FAST)
-def move(relaxing, u, u_next, v, body, nodes):
-    """See law.move."""
-    move_law(relaxing.law, u, u_next, v, body, nodes)
-
-
-@njit(**FAST)
-def finish(relaxing, v, body, nodes, work):
-    """See law.finish."""
-    finish_law(relaxing.law, v, body, nodes, work)
-
-
 answer(relax, Bonded, _relax)
 answer(relax, LaneBonded, _relax_with_rows)
-is_law(Relaxing, begin=begin, check=check, push=push, move=move, finish=finish)

@@ -54,9 +54,7 @@ def case(tables: dict, changes: dict) -> DiskCase:
 
 def settled(scene: DiskScene, step: float) -> Simulation:
     beginning = Disks().begin(scene, step, None)
-    return Simulation(
-        scene, step, list(scene.monitors.values()), system=beginning.system, datum=beginning.datum
-    )
+    return Simulation(scene, step, list(scene.monitors.values()), system=beginning.system, datum=beginning.datum)
 
 
 @pytest.mark.parametrize("geometry", ["reference", "updated"])
@@ -173,7 +171,7 @@ def force_at_break(simulation: Simulation) -> np.ndarray:
 
 @pytest.mark.parametrize("motion", [(6e-5, 0.0), (-3e-5, 1e-4)])
 def test_strength_does_not_depend_on_the_rate(lab, motion):
-    """Pulled with an open contact, and sheared with a closed one that sticks: a force grows by 2e-4 of itself a step."""
+    """Pulled with an open contact, and sheared with a closed one that sticks: forces grow by 2e-4 in a step."""
     found = {
         name: force_at_break(gripped(lab, motion, duration, QUALITY, pb_ten=5e4, pb_coh=1e5))
         for name, duration in TIMES.items()
@@ -209,6 +207,7 @@ def test_what_is_cut_off_flies_by_the_energy_of_its_bonds_alone(lab):
             broken_at = number
         elif broken_at is not None:
             fastest = max(fastest, abs(float(simulation.state.velocity[0, 1])))
-    assert broken_at is not None and 1.5 < broken_at * step < 2.2
+    assert broken_at is not None
+    assert 1.5 < broken_at * step < 2.2
     energy = sum(stored[broken_at - 2])
     assert 0.05 * energy < 0.5 * scene.mass[1] * fastest**2 < energy

@@ -322,9 +322,11 @@ class MaterialTable(Table):
         if law.has_history and not law.relaxes:
             problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
         if law.has_history and (none := self._no_bonds):
-            problems.append(f"quality_factor: is of bonds under law = \"{self.law}\", but {none} leaves none")
+            problems.append(f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none')
         if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append("elastic_start: is true, but bonds are damped from the start (quality_factor); leave it out")
+            problems.append(
+                "elastic_start: is true, but bonds are damped from the start (quality_factor); leave it out"
+            )
         if self.damp > 0.0:
             problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
         return problems

@@ -46,8 +46,8 @@ class ContactList(RenewedList):
         (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
-    intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K relaxation
-        arms, see `Contacts`.
+    intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
+        relaxation arms, see `Contacts`.
 
     Attributes
     ----------
@@ -232,7 +232,9 @@ class ContactList(RenewedList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        history = ContactHistory(**{name: saved[name] for name in HISTORY}, drag=saved.get("drag"), lag=saved.get("lag"))
+        history = ContactHistory(
+            **{name: saved[name] for name in HISTORY}, drag=saved.get("drag"), lag=saved.get("lag")
+        )
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))

@@ -94,7 +94,17 @@ class LayeredGround(PackedMaterial):
         zones, layers = (
             tuple(zone._replace(material=zone.material.relaxed) for zone in some) for some in (self.zones, self.layers)
         )
-        return replace(self, is_relaxed=True, zones=zones, layers=layers)
+        return self._with(is_relaxed=True, zones=zones, layers=layers)
+
+    @property
+    def undamped(self) -> LayeredGround:
+        """The ground without damping, with the springs of its moduli: itself if it is not damped."""
+        if not self.is_damped:
+            return self
+        zones, layers = (
+            tuple(zone._replace(material=zone.material.undamped) for zone in some) for some in (self.zones, self.layers)
+        )
+        return self._with(mechanisms=None, zones=zones, layers=layers)
 
     def zone_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the zone, from the bottom, of disks at heights (n,) m."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -125,7 +126,29 @@ class PackedMaterial:
     @property
     def relaxed(self) -> PackedMaterial:
         """The ground with the springs that it has at rest, without the forces of damping."""
-        return replace(self, is_relaxed=True)
+        return self._with(is_relaxed=True)
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether intact bonds have relaxation arms, by which ground that can break is damped."""
+        return self.law.has_history and self.is_damped
+
+    @cached_property
+    def stepped(self) -> PackedMaterial:
+        """The ground with the springs of its disks as they are stepped: those at rest where bonds have arms."""
+        return self.relaxed if self.relaxes else self
+
+    @property
+    def undamped(self) -> PackedMaterial:
+        """The ground without damping, with the springs of its moduli: itself if it is not damped."""
+        return self._with(mechanisms=None) if self.is_damped else self
+
+    def _with(self, **damping: Any) -> Self:
+        """The ground with other damping, which changes nothing of what is known of its continuum."""
+        found = replace(self, **damping)
+        for name in ("_skins", "_cuts", "_resting", "_continua"):
+            object.__setattr__(found, name, getattr(self, name))
+        return found
 
     @property
     def _spring_factor(self) -> float:

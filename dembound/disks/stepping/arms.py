@@ -19,7 +19,9 @@ from dembound.kernels.tables.laws import Arms
 
 def arms_per_bond(scene: DiskBody) -> int:
     """Number K of relaxation arms of a bond, 0 without any."""
-    return max((each.count for each in scene.ground.mechanisms_by_layer if each), default=0) if scene.relaxes else 0
+    return (
+        max((each.count for each in scene.ground.mechanisms_by_layer if each), default=0) if scene.ground.relaxes else 0
+    )
 
 
 def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
@@ -29,6 +31,8 @@ def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
     times are weighted by their compliance.
     """
     decay, weight = _by_layer(scene.ground, time_step)
+    if len(set(scene.ground.mechanisms_by_layer)) == 1:
+        return Arms(decay[:1], weight[:1], np.zeros((CHUNKS, LOST)))
     shape = contacts.own_types, decay.shape[1]
     found = Arms(np.ones(shape), np.zeros(shape), np.zeros((CHUNKS, LOST)))
     kind, at = np.unique(contacts.kind, return_index=True)
@@ -46,6 +50,18 @@ def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
     rate = np.where(both > 0.0, (one[0] * one[1] + two[0] * two[1]) / np.where(both > 0.0, both, 1.0), 0.0)
     found.weight[kind], found.decay[kind] = both, np.exp(rate)
     return found
+
+
+def of_all_types(arms: Arms, count: int) -> Arms:
+    """Arms with rows for so many types of contacts, of which those that were not built have no bonds.
+
+    Kernels also read the rows of pairs without bonds.
+    """
+    built = len(arms.decay)
+    if built == 1 or built >= count:
+        return arms
+    more = (0, count - built), (0, 0)
+    return arms._replace(decay=np.pad(arms.decay, more, constant_values=1.0), weight=np.pad(arms.weight, more))
 
 
 def _by_layer(ground: PackedMaterial, time_step: float) -> tuple[np.ndarray, np.ndarray]:

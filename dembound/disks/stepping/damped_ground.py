@@ -143,12 +143,12 @@ def unrelaxed(scene: DiskBody) -> np.ndarray:
 def disk_memories(
     scene: DiskBody, nodes: slice, rows: Rows, supported: np.ndarray, time_step: float
 ) -> DiskMemories | None:
-    """Memories of the disks of a part, for steps of this length (s); None in undamped ground, and where bonds have arms.
+    """Memories of the disks of a part, for steps of this length (s); None in undamped ground, or where bonds have arms.
 
     supported : (k,) slots of all supported nodes.
     """
     layers, layer = layers_of(scene, np.arange(nodes.start, nodes.stop))
-    if scene.relaxes or not any(layers):
+    if scene.ground.relaxes or not any(layers):
         return None
     factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
     drag = _drag(scene, nodes, supported, time_step)

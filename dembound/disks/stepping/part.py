@@ -11,12 +11,13 @@ from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.contacts.placing import NO_DASHPOTS
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.stepping.arms import of_all_types
 from dembound.disks.stepping.damped_ground import DiskMemories
 from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
-from dembound.kernels.arms import arms_energy
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import LOST, REFERENCE, SLID
+from dembound.kernels.relaxing import arms_energy
 from dembound.kernels.tables import (
     Arms,
     Bonded,
@@ -123,6 +124,7 @@ class DiskPart(Part):
         endless = {name: getattr(contacts.limits, name) + np.inf for name in self.ground.law.strengths}
         limits = contacts.limits._replace(**endless)
         law = Bonded(pairs, limits, contacts.origin, contacts.skins, contacts.cells, False, *self._space)
+        arms = of_all_types(arms, len(pairs.constants))
         return Relaxing(self._in_rows(contacts, law), law, contacts.limits, arms, self.stops_at_breaks)
 
     @property

@@ -69,7 +69,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         held = first - nodes.start, second - nodes.start, vectors
     part = scene.assembly.part(nodes)
     return ContactList(
-        scene.stepped_ground,
+        scene.ground.stepped,
         scene.case.material,
         part,
         (along_x, along_y),
@@ -205,12 +205,13 @@ class DiskParts:
         if scene.has_history:
             lists = contact_lists(scene) if start is None else start.contacts
         supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
+        ground, layout = scene.ground.stepped, scene.layout
         self.parts = tuple(
             DiskPart(
-                name, scene.stepped_ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
+                name, ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), layout,
                 lists.get(name), scene.at_rest_of(name),
                 None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
-                None if time_step is None or not scene.relaxes else arms_of(scene, lists[name], time_step),
+                None if time_step is None or not scene.ground.relaxes else arms_of(scene, lists[name], time_step),
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         )  # fmt: skip
@@ -219,7 +220,7 @@ class DiskParts:
             part.dashes = time_step is not None
         self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
         self.seams = tuple(map(FreeFieldSeam, scene.seams, self.parts))
-        self.remembers_seams = not scene.relaxes
+        self.remembers_seams = not scene.ground.relaxes
         tied = tied_nodes(scene, seams=self.remembers_seams)
         self.damped_ties = None if time_step is None else ties_remembering(scene, tied, time_step)
 

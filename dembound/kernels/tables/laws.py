@@ -78,8 +78,8 @@ class LaneBonded(NamedTuple):
 class Arms(NamedTuple):
     """Relaxation arms of intact bonds, see kernels/arms.py.
 
-    decay, weight : (p, K) e, and w/(1 − Σw), of the K arms of the types of contacts as built. lost (chunks, 5) : work
-    space.
+    decay, weight : (p, K) e, and w/(1 − Σw), of the K arms of each type of contacts, or (1, K) where all are alike.
+    lost (chunks, 5) : work space.
     """
 
     decay: np.ndarray
