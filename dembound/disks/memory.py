@@ -201,7 +201,8 @@ def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
 
 def _listing_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes while pairs are listed anew."""
-    return total(_with_arms(case, z), "listing", pairs_in_rows=z.in_rows, arms=case.relaxes)
+    arms = case.relaxes * (1.0 if z.in_rows else 3.0)  # of pairs in no row also the old list, and that to sort
+    return total(_with_arms(case, z), "listing", pairs_in_rows=z.in_rows, arms=arms)
 
 
 def _with_arms(case: DiskCase, z: SceneSizes) -> dict[str, float]:

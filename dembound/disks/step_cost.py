@@ -29,6 +29,10 @@ DAMPED = 2.7
 """Nanoseconds of a step of a disk by three mechanisms of damping."""
 
 
+ARMS = {True: 17.0, False: 46.0}
+"""Nanoseconds of a step of a disk by three relaxation arms of its bonds, in rows of copies or one by one."""
+
+
 def time_per_disk(scene: DiskScene) -> float:
     """Nanoseconds of a step per disk of a scene."""
     return _time_per_disk(scene, scene.has_history)
@@ -36,9 +40,11 @@ def time_per_disk(scene: DiskScene) -> float:
 
 def _time_per_disk(scene: DiskScene, has_history: bool) -> float:
     """Nanoseconds of a step per disk, under the law with a history or the elastic one before it."""
+    in_rows = scene.slots is not None and not scene.slots.is_plain
     damped = DAMPED if scene.ground.is_damped else 0.0
+    damped = ARMS[in_rows] if scene.ground.relaxes else damped
     damped += DASHPOTS if scene.case.material.has_dashpots else 0.0
-    return DISK[scene.slots is not None and not scene.slots.is_plain, has_history] + damped
+    return DISK[in_rows, has_history] + damped
 
 
 def slower(scene: DiskScene) -> Slower | None:

@@ -123,7 +123,7 @@ class ContactList(RenewedList):
             # near pairs of the start are the same in all copies, as contacts are
             self.bonds = self._constants = self._constants[: max(self.own_types, int(pairs.contact_type.max()) + 1)]
             self._plan = PairPlan.of(pairs.first, pairs.second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, history)
+            self._list(pairs, history._replace(lag=None))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n).

@@ -19,9 +19,8 @@ from dembound.kernels.tables.laws import Arms
 
 def arms_per_bond(scene: DiskBody) -> int:
     """Number K of relaxation arms of a bond, 0 without any."""
-    return (
-        max((each.count for each in scene.ground.mechanisms_by_layer if each), default=0) if scene.ground.relaxes else 0
-    )
+    counts = [each.count for each in scene.ground.mechanisms_by_layer if each is not None and scene.ground.relaxes]
+    return max(counts, default=0)
 
 
 def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
