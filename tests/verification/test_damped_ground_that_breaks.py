@@ -77,6 +77,21 @@ def test_until_contacts_open_it_moves_as_elastic_ground_of_the_same_quality(geom
     assert np.abs(broken - elastic).max() < (1e-10 if geometry == "reference" else 1e-4) * np.abs(elastic).max()
 
 
+def test_between_layers_of_unlike_quality_a_bond_is_damped_by_both():
+    """Its halves are in series, with weights by their compliance: 9e-4, and 2e-2 with those of its first disk alone.
+
+    With half of each it would be 5e-3, as the softer half has 4 times the compliance.
+    """
+    layer = [{"name": "soft", "thickness": 8.0, "p_wave_speed": 250.0, "quality_factor": 10.0}, {"name": "stiff"}]
+    both = []
+    for law in ("elastic", "linearpbond"):
+        changes = {"material.law": law, "material.contact_share": 0.0, "layer": layer, "material.quality_factor": 100.0}
+        scene = build(case(LATTICE, changes | {"monitor": [{"name": "up", "position": [0.25, 15.25]}]}))
+        both.append(Simulation(scene, 2e-4, list(scene.monitors.values())).advance(1500)[:, 0, 3:])
+    elastic, broken = both
+    assert np.abs(broken - elastic).max() < 1e-3 * np.abs(elastic).max()
+
+
 def test_plane_waves_lose_by_the_quality_factor():
     """1/Q = Im(1/k²)/Re(1/k²), with e^(−ik·100 m) between two disks, of P and S waves over the band, within 3 %.
 
@@ -138,6 +153,29 @@ def test_settled_ground_stays_at_rest():
     state = simulation.state
     assert np.abs(state.displacement - state.datum).max() < 1e-14
     assert np.abs(state.datum).max() > 1e-3
+
+
+@pytest.mark.parametrize("law", [{"law": "elastic"}, {"law": "linearpbond"} | STRONG])
+def test_damped_ground_has_the_stress_asked_for(law):
+    """Tractions are 10 and 20 kPa whatever the springs are; strains of 6e-5 change the geometry by as much."""
+    changes = {"packing.bricks": [8, 8], "boundary": {}, "wave": {}, "output.stress": True, "run.time_step": 1e-4}
+    changes |= {"static": {"stress": [-1e4, -2e4, 0.0], "ratio": 1e-9}} | {f"material.{k}": v for k, v in law.items()}
+    simulation = settled(build(case(LATTICE, changes)), 1e-4)
+    simulation.advance(2)
+    stress = simulation.system.stress(simulation.state.displacement)
+    inside = (np.abs(simulation.scene.positions - 2.0) < 1.5).all(axis=1)  # others have contacts on one side only
+    np.testing.assert_allclose(stress[inside, :2], np.tile([-1e4, -2e4], (36, 1)), rtol=1e-3)
+
+
+def test_twins_beside_a_free_field_move_as_it_does():
+    """Ground without a hole moves as its column does, whose bonds have arms, too, until bonds break."""
+    changes = {"packing.bricks": [8, 12], "material.law": "linearpbond", "boundary": GRAINS["boundary"]}
+    scene = build(case(LATTICE, changes))
+    simulation = Simulation(scene, choose_step(scene)[0])
+    simulation.advance(400)
+    body, moved = np.arange(scene.column_count, scene.disk_count), simulation.state.displacement
+    apart = np.abs(moved[:, body] - moved[:, scene.seams[0].twin[body]]).max()
+    assert apart < 1e-9 * np.abs(moved).max()
 
 
 QUALITY = fitted(25.0, (0.3, 10.0), 1.73, 3)
