@@ -44,6 +44,11 @@ class Attenuation(ABC):
         return 1.0
 
     @property
+    def relaxed(self) -> float:
+        """Stiffness at rest over the unrelaxed one; by default 1."""
+        return 1.0
+
+    @property
     def drag(self) -> float:
         """Force against the motion over mass and velocity, 1/s; by default none."""
         return 0.0
@@ -162,6 +167,11 @@ class Mechanisms(Attenuation):
         """M_U/M₀."""
         at = _factor(np.array(self.weights), np.array(self.times), np.asarray(self.frequency))
         return float(np.real(at**-0.5) ** 2)
+
+    @property
+    def relaxed(self) -> float:
+        """1 − Σw."""
+        return 1.0 - math.fsum(self.weights)
 
     @property
     def count(self) -> int:

@@ -182,7 +182,7 @@ def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes |
         kept = 0.0 if before is None else pairs_bytes(case, before)  # from which the excavated body begins
         stages["settle"] = built + kept + _settling_bytes(case, first)
     elif _has_history(case):
-        stages["list"] = built + _listing_bytes(stepped)
+        stages["list"] = built + _listing_bytes(case, stepped)
     return largest(stages, case)
 
 
@@ -195,19 +195,27 @@ def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
 def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of the list of pairs with a history."""
     scatter, dashpots = case.material.pb_scatter is not None, case.material.has_dashpots
-    return total(z.counts, "pairs", pairs_in_rows=z.in_rows, scatter=scatter, dashpots=dashpots)
+    every = {"pairs_in_rows": z.in_rows, "scatter": scatter, "dashpots": dashpots, "arms": case.relaxes}
+    return total(_with_arms(case, z), "pairs", **every)
 
 
-def _listing_bytes(z: SceneSizes) -> float:
+def _listing_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes while pairs are listed anew."""
-    return total(z.counts, "listing", pairs_in_rows=z.in_rows)
+    arms = case.relaxes * (1.0 if z.in_rows else 3.0)  # of pairs in no row also the old list, and that to sort
+    return total(_with_arms(case, z), "listing", pairs_in_rows=z.in_rows, arms=arms)
+
+
+def _with_arms(case: DiskCase, z: SceneSizes) -> dict[str, float]:
+    """Numbers of all things, with the relaxation arms of places and of pairs."""
+    arms = case.damping.memories * case.relaxes
+    return z.counts | {"arm": arms * z.counts["place"], "kept_arm": arms * z.counts["pair"]}
 
 
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     """Bytes of motion, ledger and record of the stepped scene, its pairs, and a snapshot of the whole scene."""
     has_history, damping = _has_history(case), case.damping
-    counts = z.counts
-    if case.is_damped:
+    counts, remembers = _with_arms(case, z), case.is_damped and not case.relaxes
+    if remembers:
         counts["memory"] = damping.memories * z.slots
     moving = total(
         counts,
@@ -217,9 +225,9 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         loads=bool(case.load) or has_history,
         change=has_history,
         settled=case.static is not None,
-        damping=case.is_damped,
-        damped_rest=case.is_damped and case.static is not None,
-        drag=case.is_damped and damping.type == "rayleigh",
+        damping=remembers,
+        damped_rest=remembers and case.static is not None,
+        drag=remembers and damping.type == "rayleigh",
     )
     pairs = pairs_bytes(case, z) if has_history else 0.0
     fields = total(whole.counts, "fields", contact_count=has_history)
@@ -227,7 +235,7 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         fields = max(fields, total(counts, "stress", "stress_field"))
     kept = [
         (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
-        total(counts, "saved", saved_pairs=has_history) * (case.run.checkpoint > 0.0),
+        total(counts, "saved", saved_pairs=has_history, saved_arms=case.relaxes) * (case.run.checkpoint > 0.0),
         total(whole.counts, "mesh_header"),
     ]
     return moving + pairs + max(kept)
@@ -237,19 +245,24 @@ def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of a static stage: its motion, pairs under any law, and at its end loads, forces and stresses."""
     counts = z.counts | {"slot": z.slots, "sample": 0.0}
     moving = total(counts, "motion", "settling_loads", "stress", "record") + pairs_bytes(case, z)
-    return total(counts, "settling") + max(moving, _listing_bytes(z))
+    return total(counts, "settling") + max(moving, _listing_bytes(case, z))
 
 
 def storage_of(case: DiskCase, z: SceneSizes) -> Storage:
     """Bytes on disk of the results of a scene."""
-    counts, output, has_history, layered = z.counts, case.output, _has_history(case), bool(case.layer)
+    counts, output, has_history, layered = _with_arms(case, z), case.output, _has_history(case), bool(case.layer)
     fields = {"tensors": output.stress, "numbers": has_history}
     numbers = has_history + output.peaks + layered
     vtu = total(counts, "vtu", vtu_forces=output.contacts, **fields | {"numbers": numbers})
     vtkhdf = total(counts, "vtkhdf", vtkhdf_forces=output.contacts, **fields)
     record = total(counts, "snapshot", tensors=output.stress, coordination=has_history, forces=output.contacts)
     fixed = for_paraview(output.paraview, 0.0, total(counts, "vtkhdf_header", numbers=layered))
-    stages = {"saved_pairs": has_history, "state_history": has_history, "state_settled": case.static is not None}
+    stages = {
+        "saved_pairs": has_history,
+        "saved_arms": case.relaxes,
+        "state_history": has_history,
+        "state_settled": case.static is not None,
+    }
     return Storage(
         header=total(counts, "header", numbers=layered) + fixed,
         snapshot=record + for_paraview(output.paraview, vtu, vtkhdf),

@@ -114,7 +114,7 @@ def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     row, _ = with_layers(scene.ground, replace(row, positions=scene.positions[place]), ())
     fraction = mass_factor(len(place), edges, case.boundary)
     levels = {"body": row.tile[:, 1].astype(np.int64) if scene.ground.is_layered else None}
-    slots, contacts = lay_out(row, scene.ground, parts_of(len(place), ()), fraction, levels)
+    slots, contacts = lay_out(row, scene.ground.stepped, parts_of(len(place), ()), fraction, levels)
     share = fraction / scene.cell_fraction[place]
     return OneRow(
         case=case,

@@ -222,7 +222,7 @@ def _scene(
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
         assembly,
-        ground,
+        ground.stepped,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
         levels_by_part(case, ground, assembly, seams, surface),

@@ -83,7 +83,7 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
         layer, each = scene.ground.layer_of(heights), np.zeros((3, len(heights)))
         for number in np.unique(layer):
             own = layer == number
-            ground = scene.ground.at(float(heights[own][0]))
+            ground = scene.ground.at(float(heights[own][0])).undamped
             bonds = CutBonds.of(ground, ends.only(own), body.positions)
             each[:, own] = part[own] * _at_rest(ground, at_rest, ends.only(own), bonds, heights[own], x[own])
         for component in range(3):
@@ -141,7 +141,7 @@ def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
     none = np.zeros((whole, 2), dtype=np.int64)
     each = CutContacts(zero, np.arange(whole), zero > 0, second, none, none, zero)
     if scene.at_rest is not None and scene.at_rest.slides:
-        ground = scene.ground.at(float(body.positions[0, 1]))
+        ground = scene.ground.at(float(body.positions[0, 1])).undamped
         bonds = CutBonds.of(ground, each, body.positions)
         force = _at_rest(ground, scene.at_rest, each, bonds, np.full(whole, body.positions[0, 1]))[:2]
     else:
@@ -158,8 +158,8 @@ def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
 
 def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
     """Forces (3, e, 3) per stress and (3, e) as built, see `SideForces`, of contacts on the disks of one end."""
-    ground, brick, locked_in = scene.ground, scene.ground.brick, scene.case.material.locked_in
-    bonds = CutBonds.of(ground, cut, body.positions)
+    ground, brick, locked_in = scene.ground.stepped, scene.ground.brick, scene.case.material.locked_in
+    bonds = CutBonds.of(ground.undamped, cut, body.positions)
     per_stress = _per_stress(ground, bonds)
     as_built = np.zeros(per_stress.shape[:2])
     if locked_in is not None:
@@ -167,7 +167,7 @@ def _through(scene: DiskBody, body: Assembly, cut: CutContacts) -> tuple[np.ndar
         constants = brick_constants(ground, gaps_close=False, locked_in=share)[cut.contact_type]
         overlap = np.maximum(constants[:, K.touch] - constants[:, K.rest], 0.0)
         as_built[:2] = -constants[:, K.kn] * overlap * bonds.normal
-        as_built -= per_stress @ (share * ground.moduli.emod * brick.stress)
+        as_built -= per_stress @ (share * ground.contact_modulus * brick.stress)
     return per_stress, as_built
 
 

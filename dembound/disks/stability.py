@@ -171,9 +171,14 @@ def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
     # relative springs are never stiffer than springs on the motion itself
     bearing = None if scene.bearing is None else (scene.layout.slot[scene.bearing.node], scene.bearing.stiffness.T)
 
+    # fast motion meets unrelaxed springs; of layers all are as much stiffer as those with the lowest quality factor
+    relaxed = [each.relaxed for each in scene.ground.mechanisms_by_layer if each is not None and scene.ground.relaxes]
+
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in scene.rows:
             contact_forces(u, rows, force)
+        if relaxed:
+            force /= min(relaxed)
         if change is not None:
             change(u, force)
         if bearing is not None:

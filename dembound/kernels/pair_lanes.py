@@ -75,29 +75,29 @@ _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY
 
 
 @njit(**INLINED)
-def _lanes(numbers):
+def in_lanes(numbers):
     """A number in all lanes, or lanes themselves."""
     return splat(0.0) + numbers
 
 
 @njit(**INLINED)
-def _add(sums, first, values):
+def add_to(sums, first, values):
     """Add eight numbers to those in an array (n,) from index `first` on."""
     store(sums, U(first), load(sums, U(first)) + values)
 
 
 @njit(**INLINED)
-def _apart(u, at):
+def apart_of(u, at):
     """Displacements of second disks relative to those of first ones."""
     _, i, j = at
     return load_of(u, U(0), j) - load_of(u, U(0), i), load_of(u, U(1), j) - load_of(u, U(1), i)
 
 
 @njit(**INLINED)
-def _slide(way, arms, at, v):
+def slide_of(way, arms, at, v):
     """Rate (m/s) of the shear of pairs."""
     (nx, ny), (arm_i, arm_j), (_, i, j) = way, arms, at
-    dvx, dvy = _apart(v, at)
+    dvx, dvy = apart_of(v, at)
     return nx * dvy - ny * dvx - arm_i * load_of(v, U(2), i) - arm_j * load_of(v, U(2), j)
 
 
@@ -117,7 +117,7 @@ def _contact(law, at, overlap, shear, opening, sliding, step, exists, contacts, 
     changed = np.uint8((closed | ~(byte_of(where_equal(contacts.closed, c, _CLOSED)) ^ now) | was ^ now) & exists)
     if changed != 0:
         passed = closing_work(limits, k, q, overlapped, overlap, had_closed, N)
-        _add(taken, LANES, choose(bits(np.uint8((was ^ now | closed) & exists)), passed, 0.0))
+        add_to(taken, LANES, choose(bits(np.uint8((was ^ now | closed) & exists)), passed, 0.0))
         note_some(contacts.closed, c, np.uint8(was & ~now), np.uint8(~was & ~now), exists)
     slid = slip
     if slips_by_overlap(limits):
@@ -134,8 +134,8 @@ def _contact(law, at, overlap, shear, opening, sliding, step, exists, contacts, 
         loss = rubbed(limits, k, q, overlapped, overlap, earlier, shear, slip, slid, before, S)
         loss = choose(bits(exists), loss, 0.0)
         store_some(contacts.slip, c, slid, exists)
-        _add(taken, 0, larger(loss, 0.0))
-        _add(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
+        add_to(taken, 0, larger(loss, 0.0))
+        add_to(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
     return N, S
 
 
@@ -146,30 +146,30 @@ def _resist(law, at, overlap, opening, sliding, step, exists, contacts, limits, 
     viscosities = load_of(contacts.viscosity, U(0), c), load_of(contacts.viscosity, U(1), c)
     push, rub = resistance(limits, k, q, overlap, viscosities, opening, sliding)
     loss = 0.5 * step * ((load_of(drag, U(1), c) + rub) * sliding - (load_of(drag, U(0), c) + push) * opening)
-    _add(taken, 2 * LANES, choose(bits(exists), loss, 0.0))
+    add_to(taken, 2 * LANES, choose(bits(exists), loss, 0.0))
     store_some_of(drag, U(0), c, push, exists)
     store_some_of(drag, U(1), c, rub, exists)
     return push, rub
 
 
 @njit(**INLINED)
-def _reference(law, at, way, u):
+def reference(law, at, way, u):
     """Arms, stretch and shear in the geometry of the start, whose normals are `way`."""
     (k, began, q, _, _), (_, i, j), (nx, ny) = law, at, way
     rest = k[q, P.rest]
     arm_i = 0.5 * rest + k[q, P.offset]
     arm_j = rest - arm_i
-    dx, dy = _apart(u, at)
+    dx, dy = apart_of(u, at)
     stretch = nx * dx + ny * dy + began_with(began, q, U(0))
     shear = nx * dy - ny * dx - arm_i * load_of(u, U(2), i) - arm_j * load_of(u, U(2), j) + began_with(began, q, U(1))
     return arm_i, arm_j, stretch, shear
 
 
 @njit(**INLINED)
-def _updated(law, at, u, v, step, contacts):
+def updated(law, at, u, v, step, contacts):
     """Normals and arms that follow the motion, stretch, shear and its rate, see pair_strain.updated_strain."""
     (k, began, q, _, _), (c, _, _) = law, at
-    dx, dy = _apart(u, at)
+    dx, dy = apart_of(u, at)
     x = k[q, P.x] + dx
     y = k[q, P.y] + dy
     distance = root(x * x + y * y)
@@ -178,7 +178,7 @@ def _updated(law, at, u, v, step, contacts):
     way = x * inverse, y * inverse
     arm_i = 0.5 * distance + k[q, P.offset]
     arms = arm_i, distance - arm_i
-    sliding = _slide(way, arms, at, v)
+    sliding = slide_of(way, arms, at, v)
     shear = load(contacts.shear, c) + step * sliding
     return way[0], way[1], arms[0], arms[1], stretch + began_with(began, q, U(0)), shear, sliding
 
@@ -197,13 +197,13 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
         follows = now == 0
         if follows:
             now = left
-            nx, ny, arm_i, arm_j, stretch, shear, sliding = _updated(law, at, u, v, step, contacts)
+            nx, ny, arm_i, arm_j, stretch, shear, sliding = updated(law, at, u, v, step, contacts)
         else:
-            one, other, stretch, shear = _reference(law, at, way, u)
-            nx, ny, arm_i, arm_j = _lanes(way[0]), _lanes(way[1]), _lanes(one), _lanes(other)
-            sliding = _slide((nx, ny), (arm_i, arm_j), at, v)
+            one, other, stretch, shear = reference(law, at, way, u)
+            nx, ny, arm_i, arm_j = in_lanes(way[0]), in_lanes(way[1]), in_lanes(one), in_lanes(other)
+            sliding = slide_of((nx, ny), (arm_i, arm_j), at, v)
         left = np.uint8(left & ~now)
-        dvx, dvy = _apart(v, at)
+        dvx, dvy = apart_of(v, at)
         opening = nx * dvx + ny * dvy
         pull, side, moment = splat(0.0), splat(0.0), splat(0.0)
         intact = np.uint8(byte_of(whole) & now)

@@ -128,7 +128,8 @@ class Law(ABC):
     starts_elastic : whether a linear law with the same springs holds until a contact opens or slides, whatever the
     stress. If not, springs are those of small motion about the stress at rest, and there are none without.
     secant : force over displacement from no force over the stiffness of small motion, normal and in shear.
-    strengths : names of the limits at which bonds break.
+    strengths : names of the limits at which bonds break. relaxes : whether intact bonds may have relaxation arms
+    (kernels/arms.py), for which the forces of closed contacts and of bonds must be linear, and a quality factor.
     keys : of [material] that it adds, all required under it; uses : names of others that it has a use for, None for
     all. elsewhere : its names in other codes. help : what contacts and bonds do under it, in a few words.
     """
@@ -138,6 +139,7 @@ class Law(ABC):
     has_history: ClassVar[bool] = False
     starts_elastic: ClassVar[bool] = True
     strengths: ClassVar[tuple[str, ...]] = ("tension", "cohesion")
+    relaxes: ClassVar[bool] = False
     secant: ClassVar[tuple[float, float]] = (1.0, 1.0)
     keys: ClassVar[tuple[Key, ...]] = ()
     uses: ClassVar[tuple[str, ...] | None] = None

@@ -20,6 +20,7 @@ class LinearPBond(Elastic):
 
     name: ClassVar[str] = "linearpbond"
     has_history: ClassVar[bool] = True
+    relaxes: ClassVar[bool] = True
     elsewhere: ClassVar[tuple[str, ...]] = (
         "linear_parallel_bond",
         "parallel_bond",

@@ -45,6 +45,7 @@ CASES = {
     "small": disks(100.0, 100.0),
     "medium": disks(500.0, 400.0),
     "medium, with pairs": disks(400.0, 400.0, law=LAW),
+    "medium, with arms of bonds": disks(400.0, 400.0, law={"law": "linearpbond", "fric": 0.5, "quality_factor": 20.0}),
     "continuum": disks(40.0, 20.0, law={"fric": 0.5}, **CONTINUUM),
     "bar": {
         "bar": {"length": 1.0, "spacing": 5e-6, "density": 2500.0, "wave_speed": 4000.0},

@@ -102,6 +102,14 @@ CASES = {
         "damping": {"type": "rayleigh"},
         "boundary": FREE_FIELD | {"bottom": INPUT},
     },
+    "damped by Q, bonds break": DISKS
+    | {
+        "packing": LATTICE,
+        "material": BRITTLE | {"quality_factor": 10.0, "contact_share": 0.5},
+        "boundary": FREE_FIELD | {"bottom": INPUT},
+        "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+    },
     "damped by Q in a continuum": DISKS
     | {
         "material": MATERIAL | {"quality_factor": 10.0},
@@ -214,6 +222,7 @@ BREAKING = (
     "settled layers",
     "stress at rest beside a free field",
     "finite differences",
+    "damped by Q, bonds break",
     "membranes, past the peak",
 )
 

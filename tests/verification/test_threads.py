@@ -58,6 +58,11 @@ SCENES = {
         "boundary": dict.fromkeys(("left", "right"), "periodic") | {"bottom": {"type": "outside", "wave_s": "pulse"}},
         "material": {"quality_factor": 10.0},
     },
+    "damped by Q, breaking": {
+        "size": ROWS,
+        "boundary": ENDS,
+        "material": {key: value for key, value in WEAK.items() if key != "damp"} | {"quality_factor": 10.0},
+    },
     "breaking": {"size": ROWS, "boundary": ENDS, "material": WEAK},
     "breaking, disk by disk": {"size": FEW, "boundary": ENDS, "material": WEAK},
     "settled, free field": {

@@ -122,7 +122,7 @@ def elastic_twin(
 
 def _may_be_elastic(case: DiskCase, scene: DiskScene) -> bool:
     """Whether the law is history-dependent, with limits that are known for disks of other sizes."""
-    if not LAWS[case.material.law].has_history or not case.material.begins_elastic:
+    if not LAWS[case.material.law].has_history or not case.begins_elastic:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
     return is_square_lattice(scene.ground) and not (case.static is not None and (case.holes or pushed))

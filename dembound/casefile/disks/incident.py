@@ -10,6 +10,7 @@ from dembound.boundaries.edge import SIDES, normal_axis
 from dembound.boundaries.free import Free
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import driving_waves
+from dembound.casefile.types import LAWS
 from dembound.table import Table, quantity
 
 LEAST_RATIO = 1.5
@@ -79,9 +80,15 @@ def is_damped(tables: Mapping[str, Any]) -> bool:
 
 
 def damping_problems(tables: Mapping[str, Any]) -> Iterator[str]:
-    """A table [damping] that changes nothing, or Rayleigh damping of ground that goes on as a continuum."""
+    """A table [damping] that changes nothing, or Rayleigh damping of ground that goes on as a continuum or breaks."""
     if tables["damping"].model_fields_set and not is_damped(tables):
         yield "damping: is of no use without material.quality_factor"
+    material = tables["material"]
+    if tables["damping"].type == "rayleigh" and material and LAWS[material.law].has_history:
+        yield (
+            f'damping.type: is "rayleigh", which ground under material.law = "{material.law}" cannot have; take '
+            'type = "quality"'
+        )
     beyond = [side for side, table in tables["boundary"].items() if table and table.is_outside]
     if tables["damping"].type == "rayleigh" and beyond:
         yield (

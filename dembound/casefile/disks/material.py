@@ -1,5 +1,6 @@
 """The ``[material]`` table."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import create_model, model_validator
@@ -198,20 +199,19 @@ class MaterialTable(Table):
             raise ValueError("\n".join(problems))
         return self
 
+    def _given(self, keys: Sequence[str]) -> list[str]:
+        """Some keys, those that have values."""
+        return [key for key in keys if getattr(self, key) is not None]
+
     @property
     def by_s_waves(self) -> bool:
         """Whether the moduli follow from the S-wave speed alone."""
-        others = ("p_wave_speed", *MODULI_KEYS)
-        return self.s_wave_speed is not None and all(getattr(self, key) is None for key in others)
+        return self.s_wave_speed is not None and not self._given(("p_wave_speed", *MODULI_KEYS))
 
     @property
     def _pair(self) -> tuple[str, ...]:
         """The keys that are targets, of a pair that may lack one; without targets none."""
-        for pair in PAIRS:
-            count = sum(getattr(self, key) is not None for key in pair)
-            if count == 2 or (count == 1 and pair != PAIRS[2]):
-                return pair
-        return ()
+        return next((pair for pair in PAIRS if len(self._given(pair)) > (pair == PAIRS[2])), ())
 
     @property
     def target(self) -> Target | None:
@@ -234,8 +234,8 @@ class MaterialTable(Table):
         problems = [f"{key}: is missing; {together} go together" for key in pair if getattr(self, key) is None]
         problems += [
             f"{key}: is not allowed together with {together}, which give the stiffness"
-            for key in STIFFNESS_KEYS
-            if key not in pair and getattr(self, key) is not None
+            for key in self._given(STIFFNESS_KEYS)
+            if key not in pair
         ]
         problems += [
             f"{key}: is not allowed together with {together}, from which it is found"
@@ -287,11 +287,8 @@ class MaterialTable(Table):
 
     def _problems_with_speed(self) -> list[str]:
         """Mistakes of a material given by its P-wave speed."""
-        return [
-            f"{key}: is not allowed together with p_wave_speed, which gives the moduli"
-            for key in MODULI_KEYS
-            if getattr(self, key) is not None
-        ]
+        why = "is not allowed together with p_wave_speed, which gives the moduli"
+        return [f"{key}: {why}" for key in self._given(MODULI_KEYS)]
 
     def _problems_with_moduli(self) -> list[str]:
         """Mistakes of a material without a P-wave speed."""
@@ -310,18 +307,18 @@ class MaterialTable(Table):
 
     def _problems_without_history(self) -> list[str]:
         """Keys that have no effect unless the law depends on history."""
-        return [
-            f"{key}: is only allowed with law = {with_history()}"
-            for key in HISTORY_KEYS
-            if key in self.model_fields_set
-        ]
+        given = [key for key in HISTORY_KEYS if key in self.model_fields_set]
+        return [f"{key}: is only allowed with law = {with_history()}" for key in given]
 
     def _problems_with_quality(self) -> list[str]:
         """What damping by a quality factor does not go with."""
-        problems = []
-        if LAWS[self.law].has_history:
-            why = f'contacts slide and open and bonds break under law = "{self.law}"'
-            problems.append(f'quality_factor: is for ground without cracks, but {why}; give law = "elastic"')
+        problems, law = [], LAWS[self.law]
+        if law.has_history and not law.relaxes:
+            problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
+        if law.has_history and (none := self._no_bonds):
+            problems.append(f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none')
+        if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
+            problems.append("elastic_start: is true, but quality_factor damps bonds from the start; leave it out")
         if self.damp > 0.0:
             problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
         return problems
@@ -333,11 +330,15 @@ class MaterialTable(Table):
             problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
         if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
             problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
-        no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
-        if no_bonds:
-            given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]
-            problems += [f"{key}: is the strength of bonds, but {no_bonds} leaves none" for key in given]
+        if none := self._no_bonds:
+            strengths = self._given(STRENGTH_KEYS)
+            problems += [f"{key}: is the strength of bonds, but {none} leaves none" for key in strengths]
         return problems
+
+    @property
+    def _no_bonds(self) -> str | None:
+        """The key that leaves no bonds, with its value; None with bonds."""
+        return "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
 
 
 if TYPE_CHECKING:

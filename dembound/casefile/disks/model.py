@@ -17,6 +17,7 @@ from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, 
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
+from dembound.casefile.types import LAWS
 from dembound.holes.hole import Floor, Hole, level_beside, surface_below
 from dembound.packings.base import Packing
 from dembound.table import Box, Table, quantity
@@ -87,6 +88,16 @@ class DiskCase(Case):
     def is_damped(self) -> bool:
         """Whether the ground, or a layer of it, has a quality factor."""
         return any(material.quality_factor is not None for material in self.materials)
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether intact bonds have relaxation arms, by which ground that can break is damped."""
+        return LAWS[self.material.law].has_history and self.is_damped
+
+    @property
+    def begins_elastic(self) -> bool:
+        """Whether the elastic law serves first in place of a history-dependent one."""
+        return self.material.begins_elastic and not self.relaxes
 
     @property
     def joints(self) -> tuple[float, ...]:

@@ -46,7 +46,8 @@ class ContactList(RenewedList):
         (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
-    intact : (m,) bool, particles whose bonds never break; None: all may break.
+    intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
+        relaxation arms, see `Contacts`.
 
     Attributes
     ----------
@@ -75,9 +76,10 @@ class ContactList(RenewedList):
         factors: BondFactors | None = None,
         dashpots: Dashpots | None = None,
         intact: np.ndarray | None = None,
+        lags: int = 0,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
-        self.ground, self.factors, self.dashpots = ground, factors, dashpots
+        self.ground, self.factors, self.dashpots, self.lags = ground, factors, dashpots, lags
         self.limits = limits_of(material) if layers is None else layers[0]
         self._friction = None if layers is None else layers[1]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
@@ -121,7 +123,7 @@ class ContactList(RenewedList):
             # near pairs of the start are the same in all copies, as contacts are
             self.bonds = self._constants = self._constants[: max(self.own_types, int(pairs.contact_type.max()) + 1)]
             self._plan = PairPlan.of(pairs.first, pairs.second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, history)
+            self._list(pairs, history._replace(lag=None))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n).
@@ -209,6 +211,8 @@ class ContactList(RenewedList):
         saved |= {"origin": self.origin, "skins": self.skins}
         if self.dashpots is not None:
             saved["drag"] = self.drag
+        if self.lags > 0:
+            saved["lag"] = self.lag
         saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
@@ -228,7 +232,9 @@ class ContactList(RenewedList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        history = ContactHistory(**{name: saved[name] for name in HISTORY}, drag=saved.get("drag"))
+        history = ContactHistory(
+            **{name: saved[name] for name in HISTORY}, drag=saved.get("drag"), lag=saved.get("lag")
+        )
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))

@@ -66,7 +66,8 @@ class PairList:
     ground : whose law says how many constants of it a pair has.
     bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
-    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
+    strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. lags : numbers by which the
+    relaxation arms of a bond lag behind; 0 without arms.
     """
 
     ground: PackedMaterial
@@ -74,6 +75,7 @@ class PairList:
     own_types: int
     factors: BondFactors | None
     dashpots: Dashpots | None
+    lags: int
     bonds: np.ndarray
     _constants: np.ndarray
 
@@ -175,6 +177,8 @@ class PairList:
             viscosity = self.dashpots.at(self.arrays)
             drag = self.arrays.drag if history.drag is not None else np.zeros_like(viscosity)
             self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag)
+        if self.lags > 0 and history.lag is None:
+            self.arrays = self.arrays._replace(lag=aligned_zeros(self.lags, len(self.arrays.first)))
         if self._plan is not None:
             self.rows = self._plan.rows(self.live[: self._in_rows], constants)
             self.extra = aligned_zeros(3, self.layout.count)

@@ -19,6 +19,9 @@ from dembound.pairwise import of_law
 NO_DASHPOTS: dict[str, Any] = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0))}
 """Fields of `Contacts` without dashpots."""
 
+NO_ARMS: dict[str, Any] = {"lag": np.zeros((0, 0))}
+"""Fields of `Contacts` without relaxation arms."""
+
 
 NOTHING = np.array([1e6, 0.0, 1e6, -1e100, 0.0])
 """Where a place without a pair is: far apart. The other constants there are 0."""
@@ -37,7 +40,8 @@ class Pairs:
 class ContactHistory(NamedTuple):
     """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
 
-    kept : None where all bonds may break. force (b, 4), and drag (b, 2) N; None before they have acted.
+    kept : None where all bonds may break. force (b, 4), and drag (b, 2) N; None before they have acted. lag : (b, 3K);
+    None before relaxation arms have acted, or without any.
     """
 
     state: np.ndarray
@@ -49,6 +53,7 @@ class ContactHistory(NamedTuple):
     place: np.ndarray | None = None
     force: np.ndarray | None = None
     drag: np.ndarray | None = None
+    lag: np.ndarray | None = None
 
 
 class Placed(NamedTuple):
@@ -126,6 +131,7 @@ def in_places(
         kept=np.zeros(count, dtype=np.uint8) if history.kept is None else placed(history.kept[order]),
         force=aligned_zeros(4, count),
         **NO_DASHPOTS,
+        **NO_ARMS,
         start=np.zeros(0, np.uint32),
         end=np.zeros(0, np.uint32),
         bound=np.zeros(0, np.int64),
@@ -136,6 +142,10 @@ def in_places(
         drag = aligned_zeros(2, count)
         drag[:, live] = history.drag[order].T
         arrays = arrays._replace(drag=drag)
+    if history.lag is not None:
+        lag = aligned_zeros(history.lag.shape[1], count)
+        lag[:, live] = history.lag[order].T
+        arrays = arrays._replace(lag=lag)
     arrays = with_ends(arrays, keys[shared:], places, stop)
     return Placed(arrays, live, shared, placed(pairs.image[order]), keys)
 

@@ -156,6 +156,8 @@ class RenewedList(PairList):
         if self.dashpots is not None:
             viscosity = self.dashpots.between(first, second, arrays.constants[met.contact_type])
             columns += [(arrays.viscosity, viscosity, 0), (arrays.drag, 0, 0)]
+        if self.lags > 0:
+            columns.append((arrays.lag, 0, 0))
         if self.factors is not None:
             factors = self._factors_of(self.factors, met.first, met.contact_type)
             columns.append((np.asarray(self.limits.factor), factors, 1))
@@ -170,12 +172,18 @@ class RenewedList(PairList):
         """All pairs with their history."""
         history = ContactHistory(*(self.of(name) for name in (*HISTORY, "place")))
         drag = None if self.dashpots is None else self.drag
-        return Pairs(*self.pairs, self.image, self.of("contact_type")), history._replace(force=self.force, drag=drag)
+        history = history._replace(force=self.force, drag=drag, lag=self.lag if self.lags > 0 else None)
+        return Pairs(*self.pairs, self.image, self.of("contact_type")), history
 
     @property
     def drag(self) -> np.ndarray:
         """Last forces (b, 2) N of the dashpots of the pairs, pushing and along the shear."""
         return self.arrays.drag[:, self.live].T
+
+    @property
+    def lag(self) -> np.ndarray:
+        """Lags (b, 3K) m, m and rad of the relaxation arms of the pairs, see `Contacts`."""
+        return self.arrays.lag[:, self.live].T
 
     def _leave_out_retired(self) -> None:
         """Remove the pairs of particles that meet no others any more."""

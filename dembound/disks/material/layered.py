@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from dembound.disks.material.joints import compliances, corrected
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
-from dembound.laws import Moduli, Stiffness
+from dembound.laws import Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
 from dembound.pairwise import STRAIN
@@ -38,9 +39,6 @@ SAME = 1e-9
 
 FAINT = 1e-12
 """Springs against single motions over those of the contacts, see `Network.relaxed`."""
-
-SLIGHT = 1e-3
-"""Relative change of springs by which the derivatives of the moduli are computed."""
 
 
 class Zone(NamedTuple):
@@ -87,6 +85,14 @@ class LayeredGround(PackedMaterial):
     def materials(self) -> tuple[PackedMaterial, ...]:
         """The materials of its layers, from the surface down, without corrections."""
         return tuple(zone.material for zone in reversed(self.layers))
+
+    def _with(self, **damping: Any) -> Self:
+        """The ground with other damping in all layers, see `PackedMaterial`."""
+        zones, layers = (
+            tuple(zone._replace(material=zone.material._with(**damping)) for zone in some)
+            for some in (self.zones, self.layers)
+        )
+        return super()._with(zones=zones, layers=layers, **damping)
 
     def zone_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the zone, from the bottom, of disks at heights (n,) m."""
@@ -211,7 +217,7 @@ def _settled(below: Zone, above: Zone, height: float, origin: float, reach: floa
     moved = np.zeros(3)
     for _ in range(ROUNDS):
         moved = moved + np.nan_to_num(left)
-        lower, upper = (_corrected(moved, below.material, above.material, reach, number) for number in (0, 1))
+        lower, upper = (corrected(moved, below.material, above.material, reach, number) for number in (0, 1))
         nearby = Zone(height - reach, height, below.layer, lower), Zone(height, height + reach, above.layer, upper)
         zones = below._replace(high=height - reach), *nearby, above._replace(low=height + reach)
         left = _heights(strip, zones, height)
@@ -249,7 +255,7 @@ def _heights(strip: Assembly, zones: Sequence[Zone], height: float) -> np.ndarra
     ends = [(row >= third) & (row < 2 * third), (row > 4 * third) & (row <= 5 * third)]
     moved = _pulled(ground, strip, row < third, row > 5 * third)
     for place, component in ((1, 1), (2, 0)):
-        soft = [_compliances(each)[component] for each in (below, above)]
+        soft = [compliances(each)[component] for each in (below, above)]
         if component in below.held or np.isclose(soft[0], soft[1], rtol=SAME, atol=0.0):
             continue
         y, u = (
@@ -258,15 +264,6 @@ def _heights(strip: Assembly, zones: Sequence[Zone], height: float) -> np.ndarra
         )
         found[place] = ((u[1] - u[0]) * wide + y[0] * soft[0] - y[1] * soft[1]) / (soft[0] - soft[1])
     return found - height
-
-
-def _compliances(material: PackedMaterial) -> tuple[float, float]:
-    """Gradients ∂u_x/∂y and ∂u_y/∂y under unit traction along x and along y on horizontal planes, 1/Pa."""
-    free = [component for component in (0, 1) if component not in material.held]
-    numbers = [(2, 1)[component] for component in free]  # see homogenise.GRADIENTS
-    inverse = np.linalg.inv(material.tensor[np.ix_(numbers, numbers)])
-    found = [float(inverse[free.index(c), free.index(c)]) if c in free else np.nan for c in (0, 1)]
-    return found[0], found[1]
 
 
 def _pulled(ground: LayeredGround, strip: Assembly, held: np.ndarray, pulled: np.ndarray) -> np.ndarray:
@@ -298,53 +295,3 @@ def _pulled(ground: LayeredGround, strip: Assembly, held: np.ndarray, pulled: np
     moved = np.zeros_like(force)
     moved[free] = splu(matrix).solve(force[free])
     return moved
-
-
-def _corrected(
-    moved: np.ndarray, below: PackedMaterial, above: PackedMaterial, reach: float, number: int
-) -> PackedMaterial:
-    """The material below (number 0) or above (1) a joint, within reach (m) of it, that moves the joint.
-
-    moved : (3,) m, by which it moves down the heights where mass and stiffness for P and S waves change. The mass that
-    lacks is spread over both zones, and so is the compliance, of normal springs by that of P waves and of shear springs
-    by that of S waves.
-    """
-    own = (below, above)[number]
-    mass = -moved[0] * (below.density - above.density)
-    density = own.density * (1.0 + mass / (reach * (below.density + above.density)))
-    p, s = (
-        -np.log1p(-way * (one - other) / (reach * (one + other)))
-        for way, one, other in zip(moved[1:], *(_compliances(each)[::-1] for each in (below, above)), strict=True)
-    )
-    normal, shear = _factors(own, np.array([p, s]))
-    return replace(own, density=density, moduli=_scaled(own.moduli, normal, shear))
-
-
-def _scaled(moduli: Moduli, normal: float, shear: float) -> Moduli:
-    """Moduli with all normal and bending springs, and all shear springs, multiplied by factors."""
-    ratio = normal / shear
-    return replace(
-        moduli,
-        emod=moduli.emod * normal,
-        pb_emod=moduli.pb_emod * normal,
-        kratio=moduli.kratio * ratio,
-        pb_kratio=moduli.pb_kratio * ratio,
-    )
-
-
-def _factors(material: PackedMaterial, targets: np.ndarray) -> tuple[float, float]:
-    """Factors of normal and shear springs that change the logarithms of the moduli of P and S waves by targets (2,)."""
-    if not targets.any():
-        return 1.0, 1.0
-    moving = [1 - component for component in (1, 0) if component not in material.held]  # P along y, S along x
-    logarithms = [
-        -np.log(_compliances(each)[::-1])
-        for each in (
-            material,
-            replace(material, moduli=_scaled(material.moduli, 1.0 + SLIGHT, 1.0)),
-            replace(material, moduli=_scaled(material.moduli, 1.0, 1.0 + SLIGHT)),
-        )
-    ]
-    slopes = np.column_stack([each - logarithms[0] for each in logarithms[1:]]) / np.log1p(SLIGHT)
-    normal, shear = np.exp(np.linalg.lstsq(slopes[moving], targets[moving], rcond=1e-6)[0])
-    return float(normal), float(shear)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -44,6 +45,7 @@ class PackedMaterial:
     at which they are given, and springs are stiffer.
     overlaps : (b,) m, of the brick's contacts under the stress at rest; None under a law whose springs do not depend on
     it. is_secant : whether the stiffness is that from no force to the forces at rest, instead of that of small motion.
+    is_relaxed : whether its springs are those at rest, instead of the unrelaxed ones.
     """
 
     brick: Brick
@@ -55,6 +57,7 @@ class PackedMaterial:
     mechanisms: Attenuation | None = None
     overlaps: np.ndarray | None = None
     is_secant: bool = False
+    is_relaxed: bool = False
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _resting: dict[tuple[float, ...], np.ndarray | None] = field(
@@ -121,16 +124,55 @@ class PackedMaterial:
         return 1.0 if self.mechanisms is None else self.mechanisms.unrelaxed
 
     @property
+    def relaxed(self) -> PackedMaterial:
+        """The ground with the springs that it has at rest, without the forces of damping."""
+        return self._with(is_relaxed=True)
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether intact bonds have relaxation arms, by which ground that can break is damped."""
+        return self.law.has_history and self.is_damped
+
+    @cached_property
+    def stepped(self) -> PackedMaterial:
+        """The ground with the springs of its disks as they are stepped: those at rest where bonds have arms."""
+        return self.relaxed if self.relaxes else self
+
+    @property
+    def undamped(self) -> PackedMaterial:
+        """The ground without damping, with the springs of its moduli: itself if it is not damped."""
+        return self._with(mechanisms=None) if self.is_damped else self
+
+    def _with(self, **damping: Any) -> Self:
+        """The ground with other damping, which changes nothing of what is known of its continuum."""
+        found = replace(self, **damping)
+        for name in ("_skins", "_cuts", "_resting", "_continua"):
+            object.__setattr__(found, name, getattr(self, name))
+        return found
+
+    @property
+    def _spring_factor(self) -> float:
+        """Stiffness of `springs` over `stiffness`."""
+        if self.mechanisms is None or not self.is_relaxed:
+            return self.unrelaxed
+        return self.mechanisms.relaxed * self.unrelaxed
+
+    @property
+    def contact_modulus(self) -> float:
+        """Modulus E_c of its contacts, Pa; that at rest if it is relaxed."""
+        return self.moduli.emod * self._spring_factor if self.is_relaxed else self.moduli.emod
+
+    @property
     def springs(self) -> Stiffness:
-        """Constants of the contacts of the brick as it is stepped, unrelaxed."""
+        """Constants of the contacts of the brick as it is stepped: unrelaxed, or those at rest if it is relaxed."""
         if self.mechanisms is None:
             return self.stiffness
-        return self.stiffness.times(np.full(len(self.brick.pairs), self.unrelaxed))
+        return self.stiffness.times(np.full(len(self.brick.pairs), self._spring_factor))
 
     @property
     def spring_moduli(self) -> Moduli:
         """Micro-parameters of `springs`."""
-        moduli, factor = self.moduli, self.unrelaxed
+        moduli, factor = self.moduli, self._spring_factor
         return replace(moduli, emod=factor * moduli.emod, pb_emod=factor * moduli.pb_emod)
 
     @cached_property
@@ -180,7 +222,7 @@ class PackedMaterial:
         return np.zeros(len(first), dtype=np.int64)
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
-        """Constants of the brick's contacts between two zones, unrelaxed."""
+        """Constants of the brick's contacts between two zones, see `springs`."""
         return self.springs
 
     def pair_constants(
@@ -212,7 +254,7 @@ class PackedMaterial:
         """Pressure (Pa) at which the brick was packed, for the present stiffness of its contacts, if they have one."""
         if self.overlaps is not None:
             return 0.0
-        return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
+        return 0.0 - 0.5 * self.contact_modulus * float(self.brick.stress[0] + self.brick.stress[1])
 
     @cached_property
     def bond_share(self) -> float:

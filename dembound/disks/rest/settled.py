@@ -267,7 +267,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.layer:
         keys["layer"] = case.layer
     if scene.ground.is_damped:
-        keys["unrelaxed"] = [each and each.unrelaxed for each in scene.ground.mechanisms_by_layer]
+        each = scene.ground.mechanisms_by_layer
+        keys["unrelaxed"] = [one and one.unrelaxed * (one.relaxed if scene.ground.relaxes else 1.0) for one in each]
     settling = every_key(keys) | {"particles": scene.disk_count, "reduced": list(scene.reduced)}
     del settling["static"]["from"]
     return settling

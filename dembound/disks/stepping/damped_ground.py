@@ -143,12 +143,12 @@ def unrelaxed(scene: DiskBody) -> np.ndarray:
 def disk_memories(
     scene: DiskBody, nodes: slice, rows: Rows, supported: np.ndarray, time_step: float
 ) -> DiskMemories | None:
-    """Memories of the disks of a part, for steps of this length (s); None in undamped ground.
+    """Memories of the disks of a part, for steps of this length (s); None in undamped ground, or where bonds have arms.
 
     supported : (k,) slots of all supported nodes.
     """
     layers, layer = layers_of(scene, np.arange(nodes.start, nodes.stop))
-    if not any(layers):
+    if scene.ground.relaxes or not any(layers):
         return None
     factors, crossing = factors_of(layers, time_step), _crossing(scene, nodes, time_step)
     drag = _drag(scene, nodes, supported, time_step)
@@ -211,7 +211,7 @@ def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
     factors = np.zeros((count, 2, 2 * each.shape[2]))
     own, other = layer[owner[first]], layer[neighbour[first]]
     factors[:, 0] = np.concatenate([each[own, 0], each[other, 0]], axis=1)
-    share = _shares(scene.ground, scene.positions[owner[first], 1], scene.positions[neighbour[first], 1])
+    share = shares_of_others(scene.ground, scene.positions[owner[first], 1], scene.positions[neighbour[first], 1])
     factors[:, 1] = share[:, None] * np.concatenate([-each[own, 1], each[other, 1]], axis=1)
     constants, row_of = elastic_constants(scene.ground) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
     slot = scene.layout.slot
@@ -245,7 +245,7 @@ def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np
     return target, owner, neighbour, end
 
 
-def _shares(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:
+def shares_of_others(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Share k₁/(k₁ + k₂) of the other layer's damping in contacts of disks at heights (k,) with those at others."""
     number, shares = ground.pairing_of(heights, others), np.zeros(len(heights))
     for each in np.unique(number).tolist():

@@ -11,18 +11,22 @@ from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.contacts.placing import NO_DASHPOTS
 from dembound.disks.material.at_rest import StressAtRest
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.stepping.arms import of_all_types
 from dembound.disks.stepping.damped_ground import DiskMemories
 from dembound.kernels import bonded, bonded_lanes, damped, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import LOST, REFERENCE, SLID
+from dembound.kernels.relaxing import arms_energy
 from dembound.kernels.tables import (
+    Arms,
     Bonded,
     Contacts,
     DampedLinks,
     LaneBonded,
     LaneRows,
     Links,
+    Relaxing,
     Seam,
     SeamEnds,
     WatchedLinks,
@@ -46,7 +50,8 @@ class DiskPart(Part):
     layout : the slots in which kernels hold the scene's particles.
     contacts : its pairs with their history; None where the material's law has none.
     at_rest : stress with which its contacts begin; None: without forces.
-    memories : of its forces; None without damping.
+    memories : of its forces; None without damping, or where bonds have arms.
+    arms : relaxation arms of its bonds; None: there are none.
 
     Attributes
     ----------
@@ -66,12 +71,13 @@ class DiskPart(Part):
         contacts: ContactList | None,
         at_rest: StressAtRest | None = None,
         memories: DiskMemories | None = None,
+        arms: Arms | None = None,
     ) -> None:
         self.name = name
         self.ground = ground
         self.assembly = assembly
         self.nodes, self.layout = nodes, layout
-        self.contacts, self.at_rest, self.memories = contacts, at_rest, memories
+        self.contacts, self.at_rest, self.memories, self.arms = contacts, at_rest, memories, arms
         self.uses_history = False
         self.watches = True
         self.stops_at_breaks = False
@@ -109,7 +115,25 @@ class DiskPart(Part):
         listed = (pairs, contacts.limits, contacts.origin, contacts.skins, contacts.cells)
         if not self.uses_history:
             return WatchedLinks(self._links, *listed, contacts.arms, self._way, contacts.keeps_slip)
-        law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        if self.arms is not None:
+            return self._relaxing(contacts, pairs, self.arms)
+        return self._in_rows(contacts, Bonded(*listed, self.stops_at_breaks, *self._space))
+
+    def _relaxing(self, contacts: ContactList, pairs: Contacts, arms: Arms) -> Relaxing:
+        """The law with relaxation arms: bonds break by them, and not by the law of their springs alone."""
+        endless = {name: getattr(contacts.limits, name) + np.inf for name in self.ground.law.strengths}
+        limits = contacts.limits._replace(**endless)
+        law = Bonded(pairs, limits, contacts.origin, contacts.skins, contacts.cells, False, *self._space)
+        arms = of_all_types(arms, len(pairs.constants))
+        return Relaxing(self._in_rows(contacts, law), law, contacts.limits, arms, self.stops_at_breaks)
+
+    @property
+    def _space(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Work space of the law."""
+        return self._way, self._fastest, self._damped, self._lost
+
+    def _in_rows(self, contacts: ContactList, law: Bonded) -> Bonded | LaneBonded:
+        """The law in rows of copies, if its disks are."""
         if contacts.rows is None:
             return law
         assert isinstance(self.rows, LaneRows)
@@ -136,7 +160,11 @@ class DiskPart(Part):
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
-        return strain_energy(u, self.pairs, self.ground.law.without_limits(self.geometry))
+        limits = self.ground.law.without_limits(self.geometry)
+        in_contacts, in_bonds = strain_energy(u, self.pairs, limits)
+        if self.arms is not None:
+            in_bonds += arms_energy(self.pairs, limits, self.arms)
+        return in_contacts, in_bonds
 
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since the last call; none under a law without a history."""

@@ -17,6 +17,7 @@ from dembound.disks.contacts.layout import with_supports
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.material.constants import bond_factors, ground_limits
 from dembound.disks.material.layered import LayeredGround
+from dembound.disks.stepping.arms import arms_of, arms_per_bond
 from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
 from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
 from dembound.disks.surroundings.continuum import Surroundings
@@ -69,7 +70,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         held = first - nodes.start, second - nodes.start, vectors
     part = scene.assembly.part(nodes)
     return ContactList(
-        scene.ground,
+        scene.ground.stepped,
         scene.case.material,
         part,
         (along_x, along_y),
@@ -82,6 +83,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
+        3 * arms_per_bond(scene),
     )
 
 
@@ -156,10 +158,11 @@ def disks_on_foot(scene: DiskBody) -> np.ndarray:
     return disks[np.isin(scene.seams[0].twin[disks], scene.feet[0].wall.bonds.particle)]
 
 
-def tied_nodes(scene: DiskBody) -> np.ndarray:
-    """Nodes (k,) of a scene that ties act on."""
+def tied_nodes(scene: DiskBody, *, seams: bool = True) -> np.ndarray:
+    """Nodes (k,) of a scene that ties act on; seams : also those of a free field."""
     tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), disks_on_foot(scene)]
-    return np.concatenate([*tied, *(seam.node for seam in scene.seams), nodes_on_slit(scene.outside)])
+    across = [seam.node for seam in scene.seams] if seams else []
+    return np.concatenate([*tied, *across, nodes_on_slit(scene.outside)])
 
 
 def grids(scene: DiskBody, time_step: float, *, damped: bool) -> list[GridPart]:
@@ -195,7 +198,7 @@ class DiskParts:
     ----------
     parts : the free-field columns, if there are any, and the body. seams : one for each column. contacts : the pairs
     of each part by name, empty if the scene's law has no history. damped_ties : the memories of ties; None without ties
-    or damping.
+    or damping. remembers_seams : whether the forces across seams are among them: not where bonds have arms.
     """
 
     def __init__(self, scene: DiskBody, start: Start | None, time_step: float | None, *, watches: bool) -> None:
@@ -203,11 +206,13 @@ class DiskParts:
         if scene.has_history:
             lists = contact_lists(scene) if start is None else start.contacts
         supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
+        ground, layout = scene.ground.stepped, scene.layout
         self.parts = tuple(
             DiskPart(
-                name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
+                name, ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), layout,
                 lists.get(name), scene.at_rest_of(name),
                 None if time_step is None else disk_memories(scene, nodes, rows, supported, time_step),
+                None if time_step is None or not scene.ground.relaxes else arms_of(scene, lists[name], time_step),
             )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         )  # fmt: skip
@@ -216,7 +221,9 @@ class DiskParts:
             part.dashes = time_step is not None
         self.contacts = {part.name: part.contacts for part in self.parts if part.contacts is not None}
         self.seams = tuple(map(FreeFieldSeam, scene.seams, self.parts))
-        self.damped_ties = None if time_step is None else ties_remembering(scene, tied_nodes(scene), time_step)
+        self.remembers_seams = not scene.ground.relaxes
+        tied = tied_nodes(scene, seams=self.remembers_seams)
+        self.damped_ties = None if time_step is None else ties_remembering(scene, tied, time_step)
 
     @property
     def law_name(self) -> str:
@@ -245,7 +252,7 @@ class DiskParts:
 
     @property
     def are_damped(self) -> bool:
-        """Whether forces are remembered."""
+        """Whether the forces of disks are remembered."""
         return any(part.memories is not None for part in self.parts)
 
     def rest_at(self, displacement: np.ndarray, of_ties: np.ndarray) -> None:
@@ -255,7 +262,7 @@ class DiskParts:
                 part.memories.rest_at(part.layout.spread(displacement), part.elastic_forces(displacement))
         if self.damped_ties is not None:
             force = of_ties.copy()
-            for tie in self.seams:
+            for tie in self.seams if self.remembers_seams else ():
                 force[:, tie.nodes] += tie.elastic_forces(displacement)
             self.damped_ties.rest_at(force)
 

@@ -61,8 +61,8 @@ class DiskSystem(RecordedDisks):
         for pairs in disks.contacts.values():
             pairs.time_step = time_step
         ties = [*walls(scene), *disks.seams]
-        if disks.damped_ties is not None:
-            ties.append(disks.damped_ties)
+        if disks.damped_ties is not None:  # last of those that it remembers
+            ties.insert(len(ties) if disks.remembers_seams else len(ties) - len(disks.seams), disks.damped_ties)
         self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
         if self._bearing is not None:
             ties.append(self._bearing)
@@ -289,7 +289,7 @@ class DiskSystem(RecordedDisks):
 
     def _begin_at_rest(self) -> None:
         """Let nothing be remembered of the forces at rest, if these are balanced."""
-        if self.balance is not None and self.disks.are_damped:
+        if self.balance is not None and (self.disks.are_damped or self.disks.damped_ties is not None):
             datum = self.balance.datum
             self.disks.rest_at(datum, self.forces.of_ties(datum))
             self._note_rest(datum)

@@ -18,7 +18,16 @@ from dembound.kernels.tables.grid import (
     Shape,
     TieMemories,
 )
-from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
+from dembound.kernels.tables.laws import (
+    Arms,
+    BarBonds,
+    BarContacts,
+    Bonded,
+    LaneBonded,
+    Links,
+    Relaxing,
+    WatchedLinks,
+)
 from dembound.kernels.tables.motion import (
     NO_SIDES,
     Bearings,
@@ -37,6 +46,7 @@ __all__ = [
     "ALONG",
     "NO_SIDES",
     "Absorber",
+    "Arms",
     "BarBonds",
     "BarContacts",
     "BarLayers",
@@ -62,6 +72,7 @@ __all__ = [
     "NeighbourTable",
     "NoDrag",
     "PairRows",
+    "Relaxing",
     "Repeats",
     "Seam",
     "SeamEnds",

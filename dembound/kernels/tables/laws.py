@@ -75,6 +75,32 @@ class LaneBonded(NamedTuple):
     also_lost: np.ndarray
 
 
+class Arms(NamedTuple):
+    """Relaxation arms of intact bonds, see kernels/arms.py.
+
+    decay, weight : (p, K) e, and w/(1 − Σw), of the K arms of each type of contacts, or (1, K) where all are alike.
+    lost (chunks, 5) : work space.
+    """
+
+    decay: np.ndarray
+    weight: np.ndarray
+    lost: np.ndarray
+
+
+class Relaxing(NamedTuple):
+    """The history-dependent law on bonds with relaxation arms.
+
+    law : of the same contacts, with bonds that never break; bonded : what of it is the same in rows of copies and one
+    by one. limits : friction and strengths; arms : of the bonds; stops : return after a step in which a bond broke.
+    """
+
+    law: Bonded | LaneBonded
+    bonded: Bonded
+    limits: Any
+    arms: Arms
+    stops: bool
+
+
 class BarContacts(NamedTuple):
     """Contacts between ranges of a bar, see kernels.bar_contacts.
 

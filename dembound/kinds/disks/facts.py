@@ -87,7 +87,7 @@ def _monitor_facts(scene: DiskScene) -> Entries:
 def _tension_facts(scene: DiskScene) -> Entries:
     """Waves that would open contacts, for a run in which the law then changes."""
     law = scene.case.material.law
-    if scene.has_history and scene.case.material.begins_elastic:
+    if scene.has_history and scene.case.begins_elastic:
         for name, stress in strong_waves(scene).items():
             yield f"stress of {name}", f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
 

@@ -172,7 +172,7 @@ def _law_facts(scene: DiskScene) -> Entries:
         linear = "" if scene.ground.law.is_linear else "not linear; "
         yield "law", f"{material.law}: {linear}contacts neither open nor slip, bonds do not break"
         return
-    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.begins_elastic else ""
+    start = ", elastic until a contact opens, slips or closes or a bond yields" if scene.case.begins_elastic else ""
     yield "law", f"{material.law}{start}"
     if scene.ground.overlaps is not None:
         yield "overlap", _overlap_fact(scene.ground)
@@ -225,7 +225,7 @@ def _damping_facts(scene: DiskScene) -> Entries:
     names = [f" of {name}" for name in scene.case.layer_names] if scene.ground.is_layered else [""]
     for name, found in zip(names, scene.ground.mechanisms_by_layer, strict=True):
         if isinstance(found, Mechanisms):
-            yield from _quality_facts(name, found)
+            yield from _quality_facts(name, found, relaxes=scene.ground.relaxes)
         elif isinstance(found, Rayleigh):
             yield f"Rayleigh damping{name}", _rayleigh_fact(found)
     if scene.case.is_damped and scene.case.damping.type == "rayleigh":
@@ -242,8 +242,11 @@ def _rayleigh_fact(found: Rayleigh) -> str:
     )
 
 
-def _quality_facts(name: str, found: Mechanisms) -> Entries:
-    """The damping of ground by mechanisms; name : of the layer, after the name of each fact."""
+def _quality_facts(name: str, found: Mechanisms, *, relaxes: bool) -> Entries:
+    """The damping of ground by mechanisms; name : of the layer, after the name of each fact.
+
+    relaxes : whether bonds have relaxation arms, and settle without them.
+    """
     (low, high), (least, most) = found.band, found.range
     texts, unit = in_one_unit((low, high), "Hz")
     yield (
@@ -256,6 +259,12 @@ def _quality_facts(name: str, found: Mechanisms) -> Entries:
         f"unrelaxed stiffness{name}",
         f"{found.unrelaxed:.4g} times that of the wave speeds{step}",
     )
+    if relaxes:
+        yield (
+            f"stiffness at rest{name}",
+            f"{found.relaxed * found.unrelaxed:.4g} times that of the wave speeds: the ground settles by "
+            f"{percent(1.0 / (found.relaxed * found.unrelaxed) - 1.0)} more",
+        )
 
 
 def particles_per(count: float) -> str:

@@ -141,7 +141,7 @@ def _holes_between_forces(scene: DiskScene) -> Iterator[str]:
 def _excavated_stiffly(scene: DiskScene) -> Iterator[str]:
     """Holes excavated from damped ground, whose springs are stiffer than its wave speeds say."""
     stiffer = max((each.unrelaxed for each in scene.ground.mechanisms_by_layer if each is not None), default=1.0)
-    if scene.before is not None and stiffer > 1.0:
+    if scene.before is not None and stiffer > 1.0 and not scene.ground.relaxes:
         yield (
             f"static: holes are excavated from damped ground with its unrelaxed stiffness, {stiffer:.4g} times that of "
             f"the wave speeds, so that it moves {percent(1.0 - 1.0 / stiffer)} less; for its settlement settle the "

@@ -170,7 +170,9 @@ BREAKS = {"material.law": "linearpbond", "material.fric": 0.5}
         (Q | RAYLEIGH | {"damping.mechanisms": 3}, 'damping.mechanisms: is only allowed with type = "quality"'),
         (Q | RAYLEIGH | OUTSIDE, 'damping.type: is "rayleigh", which ground beyond boundary.right cannot have; take'),
         (Q | {"material.damp": 0.1}, "quality_factor: is not allowed together with damp"),
-        (Q | BREAKS, 'quality_factor: .* bonds break under law = "linearpbond"; give law = "elastic"'),
+        (Q | BREAKS | RAYLEIGH, 'damping.type: is "rayleigh", which ground under material.law = "linearpbond" cannot'),
+        (Q | BREAKS | {"material.contact_share": 1.0}, "quality_factor: is of bonds .* contact_share = 1 leaves none"),
+        (Q | BREAKS | {"material.elastic_start": True}, "elastic_start: is true, but quality_factor damps bonds from the start"),
     ],
 )
 def test_each_mistake_in_damping_names_what_works(bar, changes: dict, line: str) -> None:
