@@ -172,7 +172,10 @@ BREAKS = {"material.law": "linearpbond", "material.fric": 0.5}
         (Q | {"material.damp": 0.1}, "quality_factor: is not allowed together with damp"),
         (Q | BREAKS | RAYLEIGH, 'damping.type: is "rayleigh", which ground under material.law = "linearpbond" cannot'),
         (Q | BREAKS | {"material.contact_share": 1.0}, "quality_factor: is of bonds .* contact_share = 1 leaves none"),
-        (Q | BREAKS | {"material.elastic_start": True}, "elastic_start: is true, but quality_factor damps bonds from the start"),
+        (
+            Q | BREAKS | {"material.elastic_start": True},
+            "elastic_start: is true, but quality_factor damps bonds from the start",
+        ),
     ],
 )
 def test_each_mistake_in_damping_names_what_works(bar, changes: dict, line: str) -> None:
