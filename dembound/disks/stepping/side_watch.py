@@ -40,8 +40,8 @@ In ten scenes without intact zones it was 0.17 to 1, in those whose sides held 0
 TURNED = 0.01
 """Rotation (rad) of a disk that bears a force at rest, above which a run is warned of.
 
-Sides that held, also beside landslides and faults that slip, had at most 0.0043. Those that crept outwards beside ground
-that had broken up to their zones had 0.018 and 0.03, after ways of half a diameter to a diameter.
+Sides that held, also beside landslides and faults that slip, had at most 0.0043; those that crept beside ground that
+had broken up to their zones 0.018 and 0.03, after half a diameter to a diameter.
 """
 
 COLUMN = "free-field column"
