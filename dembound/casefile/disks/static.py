@@ -161,10 +161,11 @@ def _unheld_loads(
         on_column = beside and load.is_everywhere
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
+            kinds = '"fixed"' if on_column and axis == 0 else '"fixed" or "roller"'
             if load.moves_along(axis) and not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):
                 yield (
                     f"static.boundary: nothing holds the {what} along {'xy'[axis]} against {place}; "
-                    f'give {where} "fixed" or "roller"'
+                    f"give {where} {kinds}"
                 )
 
 

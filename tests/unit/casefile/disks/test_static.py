@@ -85,6 +85,11 @@ def test_the_column_beside_a_free_field_side_is_held_from_below_or_above() -> No
         assert problems(FREE_FIELD, "[static]\n", side(name, "roller"), GRAVITY) == []
     held = (FREE_FIELD, "[static]\n", side("left", "fixed"))
     assert problems(*held, GRAVITY) == [f'{said}; give bottom or top "fixed" or "roller"']
+    pushed = GRAVITY.replace("[0.0, -9.81]", "[1.0, 0.0]")  # along which rollers at the bottom let it go
+    said = said.replace("along y", "along x")
+    assert problems(FREE_FIELD, "[static]\n", side("bottom", "roller"), pushed) == [
+        f'{said}; give bottom or top "fixed"'
+    ]
     assert problems(*held, tap) == []  # what acts on the body alone may be carried by its sides
 
 
