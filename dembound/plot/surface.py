@@ -79,7 +79,9 @@ def _draw_lines(panel: Axes, found: Amplification, values: np.ndarray, label: st
     for c, name in enumerate("xy"):
         over = f", over √(x² + y²) of the free field, which has no {name}" if found.over_size[c] else ""
         style = point_style(c) | {"markersize": 3.0 if len(found.names) <= SPARSE else 1.5}
-        panel.plot(found.places[:, 0], values[:, c], label=f"{name}{over}", gid=name, **style)
+        changes = 1 + np.flatnonzero([one != other for one, other in pairwise(found.fields)])  # where lines end
+        x, y = (np.insert(each, changes, np.nan) for each in (found.places[:, 0], values[:, c]))
+        panel.plot(x, y, label=f"{name}{over}", gid=name, **style)
     if level > 0.0:
         panel.set_ylim(bottom=0.0)
     panel.set_ylabel(label, fontsize=9)

@@ -257,7 +257,8 @@ def _default(value: Any) -> str:
 def _values(schema: Mapping[str, Any]) -> str:
     """The allowed values of a key, in words."""
     if "anyOf" in schema:
-        return " or ".join(_values(each) for each in schema["anyOf"] if each.get("type") != "null")
+        kinds = [_values(each) for each in schema["anyOf"] if each.get("type") != "null"]
+        return " or ".join(kind or "text" for kind in kinds) if len(kinds) > 1 else kinds[0]
     if "enum" in schema or "const" in schema:
         return ", ".join(f'`"{each}"`' for each in schema.get("enum", [schema.get("const")]))
     if "$ref" in schema or schema.get("type") == "object":

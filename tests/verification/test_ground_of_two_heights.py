@@ -136,6 +136,21 @@ def test_damped_ground_of_two_heights(lab) -> None:
     assert error(velocities(slope(lab, near(10.0), **damped), step), velocities(wide, step)) < 2e-3
 
 
+def test_ground_whose_surface_is_below_the_disks_box_settles_under_a_law_that_breaks(lab) -> None:
+    held = {side: {"type": "roller"} for side in ("left", "right", "bottom")}
+    stage = {"load": [WEIGHT], "static": {"boundary": held, "k0": 0.5}}
+    higher = {"packing.size": [22.0, 24.0], "material.law": "linearpbond", "wave.pulse.start": 1.0}
+    case = slope(lab, near(6.0), **stage, **higher)
+    said = check(case)[0]["stress at rest"]
+    assert [text.rpartition(" at ")[2] for text in said.split("; ")] == [
+        "y = 0 m below the left end",
+        "y = 0 m below the right end",
+    ]
+    assert "-490, 0 kPa" in said  # 2.5 t/m³·9.81 m/s²·20 m, and 10 m
+    assert "-245, 0 kPa" in said
+    assert settle(build(case)).ratio < 1e-4
+
+
 def test_at_rest_each_side_has_its_own_weight_and_k0(lab) -> None:
     """Beside ground that is five times as wide and as deep the stress differs by 3 %, with the foot a height deep."""
     held = {side: {"type": "roller"} for side in ("left", "right", "bottom")}

@@ -92,7 +92,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
                 yield from _no_strength(place, table)
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
-        yield from static_problems(*settling, has_column=not lowered_in(tables))
+        whole = bool(tables["packing"] and tables["ground"])  # else it is not known whether its ground has two heights
+        yield from static_problems(*settling, has_column=whole and not lowered_in(tables))
     if tables["run"]:
         yield from run_problems(tables)
     if tables["output"]:

@@ -52,7 +52,7 @@ class Blocks:
         count = np.maximum(1, np.floor(inside / (BLOCK * diameter) * (1.0 + 1e-9))).astype(np.int64)
         low, high = rim.copy(), wide - rim
         for axis, sides in enumerate(BEYOND):
-            if moved is not None and sides[0] in scene.edges:
+            if moved is not None and set(sides) <= scene.edges.keys():  # none at the top of ground below a surface
                 shift, further = (float(moved[axis, scene.edges[side].nodes].mean()) for side in sides)
                 low[axis], high[axis] = (
                     x + shift + x / wide[axis] * (further - shift) for x in (low[axis], high[axis])

@@ -132,10 +132,18 @@ def _static_facts(scene: DiskScene) -> Entries:
 
 
 def _at_heights(at_rest: StressAtRest, heights: tuple[float, float]) -> Iterator[str]:
-    """The stress at rest at heights (m), in words; once where it is the same everywhere."""
-    for height, stress in zip(heights, at_rest.at(np.array(heights)).T.tolist(), strict=True):
-        texts, unit = in_one_unit(stress, "Pa")
-        where = "everywhere" if at_rest.is_uniform else f"at y = {height:.4g} m"
+    """The stress at rest at the top and bottom (m), in words; once where it is the same everywhere.
+
+    Below a surface that is not level: at the bottom, once if it is as high at both ends.
+    """
+    places: list[tuple[float, np.ndarray | None, str]] = [(height, None, "") for height in heights]
+    if at_rest.surface is not None:
+        ends = zip(at_rest.surface[:, [0, -1]].T.tolist(), (" below the left end", " below the right end"), strict=True)
+        by_top = {top: (heights[1], np.array([x]), of) for (x, top), of in ends}
+        places = [(y, x, of if len(by_top) > 1 else "") for y, x, of in by_top.values()]
+    for height, x, of in places:
+        texts, unit = in_one_unit(at_rest.at(np.array([height]), x)[:, 0].tolist(), "Pa")
+        where = "everywhere" if at_rest.is_uniform else f"at y = {height:.4g} m{of}"
         yield f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit} {where}"
         if at_rest.is_uniform:
             return

@@ -25,6 +25,7 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import gravity
+from dembound.casefile.disks.material import HISTORY_KEYS, Material
 from dembound.casefile.disks.static import can_break
 from dembound.casefile.disks.targets import with_history
 from dembound.casefile.reader import parsed
@@ -242,7 +243,8 @@ class _Ground:
         self._begins(name)
         scene = self._build(case)
         if LAWS[case.material.law].starts_elastic:
-            material = case.material.model_copy(update={"law": linear_law(case.material.law)})
+            given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
+            material = Material(**given | {"law": linear_law(case.material.law)})
             try:
                 settled = settle(self._build(replace(case, material=material)), self._on_look)
                 return settled.start.displacement[:2, scene.parts["body"]]

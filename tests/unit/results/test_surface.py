@@ -103,7 +103,7 @@ def test_picture_and_table_have_the_ratios(run):
     found = amplification(run)
     figure = plot_surface(run, found, "both")
     lines = {line.get_gid(): line.get_xydata() for line in figure.axes[0].lines if line.get_gid()}
-    np.testing.assert_allclose(lines["x"], [[1.0, 1.5], [4.0, 1.5], [9.0, 1.5]])
+    np.testing.assert_allclose(lines["x"], [[1.0, 1.5], [4.0, 1.5], [np.nan, np.nan], [9.0, 1.5]])
     maps = [mesh for panel in figure.axes for mesh in panel.collections if mesh.get_array() is not None]
     drawn = maps[0].get_array().reshape(len(found.frequency), 3)
     np.testing.assert_allclose(drawn[:, 1], found.spectra[1, :, 0])

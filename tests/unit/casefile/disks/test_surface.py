@@ -68,6 +68,10 @@ def test_mistakes_have_a_line_each(tmp_path: Path) -> None:
         "must be level within half a diameter over 4 m there"
         for side, low, high in (("left", 3.0, 6.0), ("right", 1.0, 2.0))
     ]
+    weight = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
+    stage = {"static.boundary": {side: {"type": "roller"} for side in ("left", "right", "bottom")}}
+    (found,) = problems_in(lambda: ground(**{"ground.surface": [[0.0, 6.0]]}, **beyond, **weight, **stage))
+    assert found.startswith("ground.surface: has 1 points")  # nothing of its sides at rest, which follow from it
     for text, line in (
         ("0,6\n10,six\n", "is not two columns of numbers"),
         ("0,6,1\n10,2,1\n", "has 3 columns, must have two, x and y in m"),
