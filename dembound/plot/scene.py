@@ -12,11 +12,11 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
+from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
-from dembound.results.surface import NUMBERED
 
 LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""
@@ -50,9 +50,6 @@ MANY_CRACKS = 500
 
 SMALLEST_CRACK = 0.1
 """Least size of the mark of a crack over that of one of few."""
-
-LONGEST_ROW = 6
-"""Number of monitors of a row up to which all are named."""
 
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
 """Drawing order of marks."""
@@ -269,15 +266,6 @@ def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
     for name, place, (side, up) in zip(named, places, sides, strict=True):
         align = {0.0: "center", 1.0: "left", -1.0: "right"}[side]
         panel.annotate(name, tuple(place), (8.0 * side, up), ha=align, va="bottom", **looks)
-
-
-def shown_names(names: Sequence[str]) -> list[str]:
-    """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` its ends alone."""
-    rows: dict[str, list[str]] = {}
-    for name in names:
-        numbered = NUMBERED.fullmatch(name)
-        rows.setdefault(numbered[1] if numbered else name, []).append(name)
-    return [name for row in rows.values() for name in (row if len(row) <= LONGEST_ROW else (row[0], row[-1]))]
 
 
 def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, float]]:

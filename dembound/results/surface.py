@@ -5,7 +5,6 @@ The own twins of monitors on a slope or in a canyon are as deep as these are, wh
 frequencies.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.casefile.disks.monitor_rows import NUMBERED
 from dembound.casefile.messages import choices, counted
 from dembound.errors import CaseError
 from dembound.interrupts import look
@@ -31,9 +31,6 @@ LAST = 0.1
 
 FEWEST = 16
 """Least number of samples of a history."""
-
-NUMBERED = re.compile(r"(.+)_\d+")
-"""A monitor of a row."""
 
 
 @dataclass(frozen=True)

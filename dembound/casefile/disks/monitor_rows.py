@@ -1,6 +1,7 @@
 """The ``[[monitor]]`` tables of a file: single places, and rows along the surface, which become single monitors."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
@@ -15,6 +16,12 @@ from dembound.casefile.model import MOST_MONITORS
 from dembound.holes.hole import Hole, surface_below
 from dembound.packings.base import TYPED, Packing
 from dembound.table import FileName, Table, quantity
+
+NUMBERED = re.compile(r"(.+)_\d+")
+"""A monitor of a row."""
+
+LONGEST_ROW = 6
+"""Number of monitors of a row up to which all are named."""
 
 DIGITS = 9
 """Digits after the point of the places of a row, m: less than disks and edges are apart (`places.ROUNDING`)."""
@@ -142,3 +149,12 @@ def _surface(along: np.ndarray, holes: Sequence[Hole], packing: Packing, ground:
         return np.full(len(along), ground.box(packing)[3])
     inside = np.clip(along, box[0] + packing.radius, box[2] - packing.radius)
     return surface_below(holes, box, inside, 2.0 * packing.radius)
+
+
+def shown_names(names: Sequence[str]) -> list[str]:
+    """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` its ends alone."""
+    rows: dict[str, list[str]] = {}
+    for name in names:
+        numbered = NUMBERED.fullmatch(name)
+        rows.setdefault(numbered[1] if numbered else name, []).append(name)
+    return [name for row in rows.values() for name in (row if len(row) <= LONGEST_ROW else (row[0], row[-1]))]

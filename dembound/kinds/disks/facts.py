@@ -9,6 +9,7 @@ from dembound.boundaries.description import side_in_words
 from dembound.boundaries.platen import Keeping
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import FREE_FIELD, Load
+from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.disks.static import can_break, keeps_forces
 from dembound.casefile.messages import counted
 from dembound.disks.contacts.layout import fill
@@ -71,9 +72,9 @@ def _wave_facts(scene: DiskScene) -> Entries:
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:
-    """For each monitor its particle, or that it is in the continuum, its place, and its free-field twin."""
+    """Of each monitor, of long rows of the ends: its particle, or that it is in the continuum, its place, its twin."""
     places = scene.monitored
-    for name in (monitor.name for monitor in scene.case.monitor):
+    for name in shown_names([monitor.name for monitor in scene.case.monitor]):
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")

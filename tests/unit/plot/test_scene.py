@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
 
+from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.errors import CaseError
-from dembound.plot.scene import CRACKS, MANY_CRACKS, plot_scene, shown_names
+from dembound.plot.scene import CRACKS, MANY_CRACKS, plot_scene
 
 
 def disks_of(panel):
