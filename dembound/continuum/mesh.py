@@ -212,10 +212,10 @@ class Mesh:
     @cached_property
     def doubled(self) -> tuple[np.ndarray, np.ndarray]:
         """Nodes (k,) on the slit of elements left of it, from the bottom, and their copies (k,)."""
-        if not self.slit:
-            return np.zeros((2, 0), dtype=np.int64)[0], np.zeros(0, dtype=np.int64)
-        assert self.box is not None
-        below = self._numbers[: self.order * self.box[1] + 1, self.order * self.box[2]]
+        below = np.zeros(0, dtype=np.int64)
+        if self.slit:
+            assert self.box is not None
+            below = self._numbers[: self.order * self.box[1] + 1, self.order * self.box[2]]
         return below, int(self._numbers.max()) + 1 + np.arange(len(below))
 
     @property

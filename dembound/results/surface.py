@@ -247,7 +247,7 @@ def _spectra(
         return np.stack([smoothed(frequency, np.abs(spectrum) ** 2, centres) for frequency, spectrum in both], axis=1)
 
     def below(name: str, centres: np.ndarray) -> np.ndarray:
-        """That of a free field (f, 2), nan where it is without energy."""
+        """Smoothed power (f, 2) of both components of a free field, nan where it has no energy."""
         own = power(name, centres)
         own = np.where(over_size, own.sum(axis=1, keepdims=True), own)
         return np.where(own >= FADED**2 * own.max(axis=0), own, np.nan)

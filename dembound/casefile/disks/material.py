@@ -200,7 +200,7 @@ class MaterialTable(Table):
         return self
 
     def _given(self, keys: Sequence[str]) -> list[str]:
-        """Some keys, those that have values."""
+        """Those of some keys that have values."""
         return [key for key in keys if getattr(self, key) is not None]
 
     @property

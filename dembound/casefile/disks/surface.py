@@ -15,6 +15,9 @@ from dembound.waves.file_wave import columns_in, header_of, read_text
 LEVEL = 4.0
 """Least length, in diameters, over which the surface is level at a side of the disks."""
 
+OTHER_UNIT = re.compile(r"\b(mm|cm|km|ft|feet|in|inch|yd)\b", re.IGNORECASE)
+"""Units of length in a header other than m."""
+
 ABOVE = "surface"
 """Name of what is above the surface of the ground, among the holes."""
 
@@ -87,10 +90,6 @@ def points_in_file(name: str, context: Mapping[str, Any]) -> tuple[Points, str]:
     if other := OTHER_UNIT.search(header_of(text)):
         raise ValueError(f'surface: the header of "{path}" names "{other[0]}", must be in m')
     return tuple((float(x), float(y)) for x, y in rows.tolist()), text
-
-
-OTHER_UNIT = re.compile(r"\b(mm|cm|km|ft|feet|in|inch|yd)\b", re.IGNORECASE)
-"""Units of length in a header other than m."""
 
 
 def air_above(points: Points, box: Box) -> Polygon:

@@ -162,6 +162,7 @@ Rows = NeighbourTable | LaneRows
 
 
 NO_LEVELS: Mapping[str, np.ndarray | None] = MappingProxyType({})
+"""Levels of parts all of whose copies have the same constants."""
 
 
 def lay_out(

@@ -115,12 +115,16 @@ class UnlikeWaves(GroundWaves):
             self.beside("left", of, times, places, corrector),
         )
 
+    @property
+    def left(self) -> GroundWaves:
+        """The motion at the left and below."""
+        return GroundWaves(self.medium, self.waves, self.signals, self.grain)
+
     def beside(
         self, side: str, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None
     ) -> np.ndarray:
         """Motion (k, d, 3) at places (d, 2) m of the ground at one side, see `GroundWaves.motion`."""
-        left = GroundWaves(self.medium, self.waves, self.signals, self.grain)
-        ground = left if side == "left" else self.right
+        ground = self.left if side == "left" else self.right
         return ground.motion(of, times, self.in_ground(side, places), corrector)
 
     def in_ground(self, side: str, places: np.ndarray) -> np.ndarray:
@@ -239,15 +243,13 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
     if table is None:
         return None
     medium, grain = outside.body.ground.only, ground.brick.mean_diameter
-    surfaces = [outside.free_surface]
     if outside.levels:
         surfaces = [outside.surface_at(side) for side in ("left", "right")]
-    each = [_below(case, medium, surface, grain) for surface in surfaces]
-    found = each[0]
-    if outside.levels:
-        tops = outside.surface_at("left")[0], outside.surface_at("right")[0]
-        border = outside.body.mesh.sides[1]
-        found = UnlikeWaves(medium, found.waves, found.signals, grain, right=each[1], border=border, tops=tops)
+        left, right = (_below(case, medium, surface, grain) for surface in surfaces)
+        tops, border = (surfaces[0][0], surfaces[1][0]), outside.body.mesh.sides[1]
+        found: GroundWaves = UnlikeWaves(medium, left.waves, left.signals, grain, right=right, border=border, tops=tops)
+    else:
+        found = _below(case, medium, outside.free_surface, grain)
     must_not_be_there(case, found, outside)
     return found
 

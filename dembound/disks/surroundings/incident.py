@@ -36,7 +36,7 @@ from dembound.continuum.axis import Rule
 from dembound.continuum.medium import ElasticPlaneWave
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.cut_bonds import CutBonds
-from dembound.disks.surroundings.ground_waves import GroundWaves, NearPlaces, UnlikeWaves
+from dembound.disks.surroundings.ground_waves import NearPlaces, UnlikeWaves
 from dembound.disks.surroundings.layered_waves import LayeredWaves, NearLayers, Undisturbed
 from dembound.disks.surroundings.oblique_layers import NearObliqueLayers, ObliqueLayers
 from dembound.disks.surroundings.wall import Wall
@@ -84,8 +84,7 @@ def parts_of(wall: Wall, ground: Undisturbed, positions: np.ndarray, first: int)
     """
     if isinstance(ground, UnlikeWaves):
         right = wall.bonds.side == SIDES.index("right")
-        left = GroundWaves(ground.medium, ground.waves, ground.signals, ground.grain)
-        for own, chosen in ((left, ~right), (ground.right, right)):
+        for own, chosen in ((ground.left, ~right), (ground.right, right)):
             yield from parts_of(wall.only(np.flatnonzero(chosen)), own, positions, first)
         return
     for element in wall.elements:

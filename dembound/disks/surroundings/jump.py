@@ -23,8 +23,7 @@ class JumpTie(Tie):
     Parameters
     ----------
     outside : the continuum. feet : those below the columns, with the same rows; none: rotations of the nodes carry the
-    rate of the jump, see oblique_jump.py. layout : the slots of
-    all nodes of the scene. time_step : Δt in s.
+    rate of the jump, see oblique_jump.py. layout : the slots of all nodes of the scene. time_step : Δt in s.
     """
 
     name = "jump"

@@ -26,6 +26,9 @@ from dembound.waves.wave import Wave
 SAMPLES = 64
 """Samples of filtered velocities per period of the highest frequency of a wave; straight lines join them."""
 
+MOST = 1e4
+"""Largest frequency (Hz) that is sampled for, of waves that jump."""
+
 SETTLED = 8.0
 """Time after a run, in 1/α, over which the spectrum of a filtered velocity goes on, so that its end is not met."""
 
@@ -63,10 +66,6 @@ class Filtered:
         """ġ (k, d) at times (k, d) s, of each depth."""
         each = zip(times.T, self._values, strict=True)
         return np.stack([np.interp(t, self._times, values, left=0.0) for t, values in each], axis=1)
-
-
-MOST = 1e4
-"""Largest frequency (Hz) that is sampled for, of waves that jump."""
 
 
 class JumpSignals:

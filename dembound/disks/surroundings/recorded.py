@@ -73,10 +73,16 @@ class RecordedContinuum(Beside):
         mesh, times = self._outside.body.mesh, np.array([time])
         if not isinstance(self._waves, UnlikeWaves):
             return self._waves.motion(of, times, mesh.positions)[0]
+        left, right = (self._waves.beside(side, of, times, mesh.positions)[0] for side in ("left", "right"))
+        return np.where(self._is_right[:, None], right, left)
+
+    @cached_property
+    def _is_right(self) -> np.ndarray:
+        """Whether each node (m,) is of elements right of the body, also below it."""
+        mesh = self._outside.body.mesh
         right = np.zeros(mesh.count, dtype=np.bool_)
-        right[mesh.nodes[mesh.is_right].ravel()] = True
-        left, other = (self._waves.beside(side, of, times, mesh.positions)[0] for side in ("left", "right"))
-        return np.where(right[:, None], other, left)
+        right[mesh.nodes[mesh.is_right].ravel()] = True  # beside a slit none of them are also of other elements
+        return right
 
     @property
     def _is_scattered(self) -> bool:
@@ -86,11 +92,7 @@ class RecordedContinuum(Beside):
     @cached_property
     def _numbers(self) -> np.ndarray:
         """The number (m,) of the free-field column that each node moves relative to."""
-        mesh = self._outside.body.mesh
-        number = np.zeros(mesh.count, dtype=np.int64)
-        if len(self._disks.columns) > 1:
-            number[mesh.nodes[mesh.is_right].ravel()] = 1  # none of them are also of other elements
-        return number
+        return self._is_right.astype(np.int64) if len(self._disks.columns) > 1 else np.zeros_like(self._is_right, int)
 
     @cached_property
     def _twin(self) -> np.ndarray | None:
