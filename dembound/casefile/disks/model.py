@@ -10,7 +10,7 @@ import numpy as np
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
-from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms
+from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
@@ -101,11 +101,26 @@ class DiskCase(Case):
 
     @property
     def joints(self) -> tuple[float, ...]:
-        """Heights y (m) of the planes between layers, from the uppermost down."""
+        """Heights y (m) of the planes between layers, from the uppermost down; of unlike sides those of both."""
+        if self.is_unlike:
+            return tuple(sorted({*self.beside("left").joints, *self.beside("right").joints}, reverse=True))
         return tuple(bottoms(self.layer, self.box[3])[:-1])
+
+    @property
+    def is_unlike(self) -> bool:
+        """Whether the layers at the left and right differ, see `Ground.meet`."""
+        return self.ground.meet is not None
+
+    def beside(self, side: str) -> "DiskCase":
+        """The case with the layers of the left or right side everywhere; itself where these are one."""
+        if not self.is_unlike:
+            return self
+        layers = tuple(layer.model_copy(update={"side": None}) for _, layer in stack(self.layer, side))
+        return replace(self, layer=layers, ground=self.ground.alike())
 
     def layer_at(self, height: float) -> int:
         """Number of the layer, from the top, at a height (m); above a plane between two on it."""
+        self._require_one_stack()
         near = 1e-9 * max(abs(self.box[1]), abs(self.box[3]))
         return sum(height + near < joint for joint in self.joints)
 
@@ -118,11 +133,17 @@ class DiskCase(Case):
 
     def layers_meeting(self, joints: Sequence[float]) -> tuple[Layer, ...]:
         """The layers if they meet at these heights (m), from the uppermost down, wherever the surface is."""
+        self._require_one_stack()
         ends = [*joints, None] if self.layer else []
         return tuple(
             layer.model_copy(update={"thickness": None, "bottom": end})
             for layer, end in zip(self.layer, ends, strict=True)
         )
+
+    def _require_one_stack(self) -> None:
+        """Raise ValueError for layers that differ at the left and right, see `beside`."""
+        if self.is_unlike:
+            raise ValueError("the layers of one side are needed")
 
     @property
     def layer_names(self) -> tuple[str, ...]:
@@ -210,12 +231,12 @@ class DiskCase(Case):
 
         Beyond sides with a continuum there is a column if the ground has waves from below, a static stage, or a load on
         all of it. The continuum then computes only the difference from the column. Where the ground is lower beyond one
-        of the sides there is one only under waves.
+        of the sides, or its layers differ there, there is one only under waves.
         """
         if self.free_field_sides:
             return self.free_field_sides
         driven = any(self.boundary[side].waves for side in self.outside_sides)
-        if any(self.periodic) or (lowered(self.floors, self.boundary) and not driven):
+        if any(self.periodic) or ((self.is_unlike or lowered(self.floors, self.boundary)) and not driven):
             return ()
         everywhere = any(load.is_everywhere for load in self.load)
         return self.outside_sides if everywhere or driven or self.static is not None else ()
@@ -224,8 +245,10 @@ class DiskCase(Case):
     def middle(self) -> float:
         """Place x (m) of the middle of the slope between its left and right side, from which monitors are beside one.
 
-        That of the disks where the surface has one height.
+        That of the disks where the surface has one height, and the plane between layers where these differ.
         """
+        if self.ground.meet is not None:
+            return self.ground.meet
         left, _, right, _ = self.packing.box
         return 0.5 * (left + self.level["left"] + right - self.level["right"])
 

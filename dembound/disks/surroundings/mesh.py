@@ -14,11 +14,12 @@ from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.axis import WHOLE, Around, divided
 from dembound.continuum.layer import LONG_WAVES
-from dembound.continuum.medium import Ground, Layered, Medium
+from dembound.continuum.medium import Ground, Layered, Medium, Unlike, one_side
 from dembound.continuum.mesh import Mesh
 from dembound.disks.material.free_surface import inset
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.surroundings.edges import ON_IT
 from dembound.disks.surroundings.settings import Settings, least_element, mesh_of, settings_of
 from dembound.errors import CaseError
@@ -138,16 +139,18 @@ class Rim(NamedTuple):
         for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
-                skins[side] = ground.at(box[3 if side == "top" else 1]).skin(side)  # left and right: of what is below
+                skins[side] = _skin(ground, side, box[3 if side == "top" else 1])  # left and right: of what is below
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
         if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
             _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
-            skins["top"] = ground.at(case.box[3]).skin("top")
+            skins["top"] = _skin(ground, "top", case.box[3])
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
-        levels = {side: Level.of(ground, body, floor, side) for side, floor in floors.items() if side in sides}
+        levels = {
+            side: Level.of(ground.beside(side), body, floor, side) for side, floor in floors.items() if side in sides
+        }
         left, bottom, right, top = box
         return cls((left, bottom, right, top), surface, skins, massless, levels)
 
@@ -237,6 +240,11 @@ class Outline(NamedTuple):
         return cls(("bottom",), size, rim, own)
 
 
+def _skin(ground: PackedMaterial, side: str, height: float) -> float:
+    """Depth (m) of the skin at a side at a height, m; where the layers at both sides differ the mean of theirs."""
+    return 0.5 * sum(ground.beside(each).at(height).skin(side) for each in ("left", "right"))
+
+
 def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
     """Values (n,) on the top of a mesh for all its nodes; beyond sides in `at_levels` their own values."""
     left, right, *_ = mesh.sides
@@ -317,6 +325,9 @@ def _refuse_low(key: str, rim: Rim, least: float) -> None:
 
 def medium_of(ground: PackedMaterial) -> Ground:
     """The continuum that a packing is equivalent to, with all six constants, by layer."""
+    if isinstance(ground, UnlikeGround):
+        left, right = (one_side(medium_of(side)) for side in ground.sides)
+        return Unlike(left, right)
     if isinstance(ground, LayeredGround):
         media = tuple(homogeneous(each.material) for each in ground.layers)
         return Layered(media, tuple(each.low for each in ground.layers[1:]))

@@ -14,7 +14,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.continuum import sizing
 from dembound.continuum.axis import Around
 from dembound.continuum.layer import Absorption
-from dembound.continuum.medium import Ground, Layered, layered
+from dembound.continuum.medium import Ground, Layered, Unlike, layered
 from dembound.continuum.mesh import Mesh
 from dembound.disks.surroundings.near_fields import extents, lasting_time, near_fields, signals_of
 from dembound.errors import CaseError
@@ -117,7 +117,9 @@ class Settings(NamedTuple):
         return shorter.side(width), shorter.side(height)
 
 
-def _taller(case: DiskCase, ground: Layered, settings: Settings, box: Box, sides: Sequence[str]) -> tuple[float, ...]:
+def _taller(
+    case: DiskCase, ground: Layered | Unlike, settings: Settings, box: Box, sides: Sequence[str]
+) -> tuple[float, ...]:
     """`Settings.taller` of layered ground, none where a largest side is given or waves have no spectrum."""
     keys, signals = case.outside, signals_of(case)
     if not ground.joints or keys.element or not signals:
@@ -126,7 +128,11 @@ def _taller(case: DiskCase, ground: Layered, settings: Settings, box: Box, sides
         (field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, ground, box, sides)),
         default=math.inf,
     )
-    enough = [min(near, sizing.element_size(signals, each, keys.order, keys.accuracy)) for each in ground.media]
+    media = ground.between_joints if isinstance(ground, Unlike) else [(each,) for each in ground.media]
+    enough = [
+        min(near, *(sizing.element_size(signals, each, keys.order, keys.accuracy) for each in beside))
+        for beside in media
+    ]
     return tuple(min(max(side / settings.element, 1.0), TALLEST) for side in enough)
 
 
@@ -258,13 +264,20 @@ class _Rows(NamedTuple):
     """
 
     settings: Settings
-    ground: Layered | None
+    ground: Layered | Unlike | None
     width: float
 
     @property
     def joints(self) -> tuple[float, ...]:
         """Heights y (m) of the joints of the layers."""
         return () if self.ground is None else self.ground.joints
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Heights y (m) of the joints on which edges lie; those of one side near one of the other share its edge."""
+        if not isinstance(self.ground, Unlike):
+            return self.joints
+        return shared_edges(self.ground, SLIVER * self.settings.element)
 
     def largest(self, height: float) -> float:
         """Largest height (m) of elements that begin at a height y, m."""
@@ -282,7 +295,7 @@ class _Rows(NamedTuple):
         """
         near = SLIVER * self.settings.element
         rows: list[float] = []
-        for first, last in pairwise([low, *(joint for joint in self.joints if low + near < joint < high - near), high]):
+        for first, last in pairwise([low, *(joint for joint in self.edges if low + near < joint < high - near), high]):
             side = self.settings._replace(element=self.largest(first + near)).side(last - first)
             rows += [side] * round((last - first) / side)
         return rows
@@ -296,6 +309,18 @@ class _Rows(NamedTuple):
         below = self.between(lowest, box[1]) if box[1] - lowest > SLIVER * self.settings.element else []
         above = [] if surface is None else self.between(box[3], surface)
         return {"below": below, "above": above, "base": self.largest(-math.inf)}
+
+
+def shared_edges(ground: Unlike, near: float) -> tuple[float, ...]:
+    """The joints of either side, ascending, without those of the right side as near (m) to one of the left one."""
+    left, edges = [*ground.left.joints], [*ground.left.joints]
+    for joint in ground.right.joints:
+        closest = min(left, key=lambda each: abs(each - joint), default=math.inf)
+        if abs(closest - joint) < near:
+            left.remove(closest)  # it takes the place of one joint only
+        else:
+            edges.append(joint)
+    return tuple(sorted(edges))
 
 
 def _rows_to(box: Box, tops: tuple[float, float] | None, rows: _Rows) -> dict[str, Any]:

@@ -22,7 +22,7 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, is_far, normal_axis
 from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene
-from dembound.disks.sides import ground_at, layers_beside
+from dembound.disks.sides import ground_at, ground_beside, layers_beside
 from dembound.disks.surroundings.frequencies import mean_frequency
 
 if TYPE_CHECKING:
@@ -149,7 +149,8 @@ def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray, height
         held = Held.of(scene, side)
         return End(held.damping[order], held.stiffness[order], moves)
     by_layer = [Held.of(scene, side, part) for part in range(len(layers))]
-    beside = np.searchsorted(-np.array(layers), -scene.ground.layer_of(heights)).clip(max=len(layers) - 1)
+    layer = ground_beside(scene, side).layer_of(np.column_stack([np.zeros_like(heights), heights]))
+    beside = np.searchsorted(-np.array(layers), -layer).clip(max=len(layers) - 1)
     damping, stiffness = (np.stack(values)[beside][:, order] for values in zip(*by_layer, strict=True))
     return End(damping, stiffness, moves)
 
