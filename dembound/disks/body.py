@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.edge import Edge
 from dembound.boundaries.half_mass import half_contacts, mass_factor
 from dembound.boundaries.support import Supports
+from dembound.casefile.disks.layer import stack
 from dembound.casefile.disks.load import FREE_FIELD
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
@@ -66,6 +67,21 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     return assembly, tuple(own)
 
 
+def layer_attributes(case: DiskCase) -> dict[str, Any]:
+    """The names of the layers of a case, and heights (m) of joints from the surface down, of each side if they differ.
+
+    Of either side also the numbers of its layers, from 1.
+    """
+    if not case.joints:
+        return {}
+    names = {"layer_names": [*case.layer_names]}
+    if not case.is_unlike:
+        return names | {"joints": [*case.joints]}
+    own = {f"{side}_layers": [number + 1 for number, _ in stack(case.layer, side)] for side in ("left", "right")}
+    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in ("left", "right")}
+    return names | {"meet": case.ground.meet} | own | joints
+
+
 @dataclass(frozen=True)
 class DiskBody(Scene):
     """A body of disks, with its free-field column if it has one, under its supports; n particles, all SI.
@@ -114,8 +130,8 @@ class DiskBody(Scene):
     @property
     def attributes(self) -> dict[str, Any]:
         """The attributes of a record's header in addition to those of every run."""
-        layers = {"layer_names": [*self.case.layer_names], "joints": [*self.case.joints]} if self.case.joints else {}
-        return {"seed": getattr(self.case.packing, "seed", 0), "column": self.column_count, **layers}
+        seed = getattr(self.case.packing, "seed", 0)
+        return {"seed": seed, "column": self.column_count, **layer_attributes(self.case)}
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:

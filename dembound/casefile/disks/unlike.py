@@ -82,11 +82,6 @@ def _not_with_them(tables: Mapping[str, Any]) -> Iterator[str]:
     """Tables for which one motion or stress of all of the ground is needed."""
     if tables["incident"]:
         yield f"incident: is not known {UNLIKE}; let the wave enter at boundary.bottom"
-    driving = {name for table in tables["boundary"].values() if table for name in table.waves.values()}
-    for name in sorted(driving):
-        wave = tables["wave"].get(name)
-        if wave and wave.motion == "within":
-            yield f'wave.{name}.motion: is "within", which is unlike left and right {UNLIKE}; give "outcrop"'
     static = tables["static"]
     if static and static.stress is not None:
         yield f"static.stress: is one stress of all the ground, and not allowed {UNLIKE}; give static.k0"
