@@ -71,7 +71,7 @@ class Ground(Table):
 
     def alike(self) -> "Ground":
         """The ground without the plane between its sides."""
-        return self.model_copy(update={"meet": None})
+        return self if self.meet is None else self.model_copy(update={"meet": None})
 
     @property
     def points(self) -> Points:

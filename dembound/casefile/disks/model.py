@@ -119,8 +119,15 @@ class DiskCase(Case):
         return replace(self, layer=layers, ground=self.ground.alike())
 
     def layer_at(self, height: float) -> int:
-        """Number of the layer, from the top, at a height (m); above a plane between two on it."""
-        self._require_one_stack()
+        """Number of the layer, from the top, at a height (m); above a plane between two on it.
+
+        Raises ValueError where it differs at the left and right, see `beside`.
+        """
+        if self.is_unlike:
+            one, other = (stack(self.layer, side)[self.beside(side).layer_at(height)][0] for side in ("left", "right"))
+            if one != other:
+                raise ValueError(f"the layers at y = {height:g} m differ at both sides")
+            return one
         near = 1e-9 * max(abs(self.box[1]), abs(self.box[3]))
         return sum(height + near < joint for joint in self.joints)
 
@@ -129,21 +136,17 @@ class DiskCase(Case):
         if not self.layer:
             return self
         only = self.layer[self.layer_at(height)].model_copy(update={"thickness": None, "bottom": None})
-        return replace(self, layer=(only,))
+        return replace(self, layer=(only,), ground=self.ground.alike())
 
     def layers_meeting(self, joints: Sequence[float]) -> tuple[Layer, ...]:
         """The layers if they meet at these heights (m), from the uppermost down, wherever the surface is."""
-        self._require_one_stack()
+        if self.is_unlike:
+            raise ValueError("the layers of one side are needed")
         ends = [*joints, None] if self.layer else []
         return tuple(
             layer.model_copy(update={"thickness": None, "bottom": end})
             for layer, end in zip(self.layer, ends, strict=True)
         )
-
-    def _require_one_stack(self) -> None:
-        """Raise ValueError for layers that differ at the left and right, see `beside`."""
-        if self.is_unlike:
-            raise ValueError("the layers of one side are needed")
 
     @property
     def layer_names(self) -> tuple[str, ...]:
