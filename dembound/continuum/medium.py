@@ -129,14 +129,14 @@ class Unlike:
     def between_joints(self) -> tuple[tuple[Medium, Medium], ...]:
         """The media left and right between each two of the joints of either side, from the bottom up."""
         ends = (*self.joints, np.inf)
-        each = [[side.media[int(np.searchsorted(side.joints, end))] for end in ends] for side in (self.left, self.right)]
+        each = [
+            [side.media[int(np.searchsorted(side.joints, end))] for end in ends] for side in (self.left, self.right)
+        ]
         return tuple(zip(*each, strict=True))
 
     def number_at(self, heights: np.ndarray, is_right: np.ndarray) -> np.ndarray:
         """Number (k,) of the medium at heights (k,) m, of the right side or of the left one; on a joint the lower."""
-        return np.where(
-            is_right, len(self.left.media) + self.right.number_at(heights), self.left.number_at(heights)
-        )
+        return np.where(is_right, len(self.left.media) + self.right.number_at(heights), self.left.number_at(heights))
 
     @property
     def only(self) -> Medium:

@@ -17,7 +17,7 @@ from dembound.disks.bearing import Springs
 from dembound.disks.columns import COLUMNS, free_field_attributes, parts_of, rest_beside
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.intact import intact_disks, intact_zones
-from dembound.disks.material.at_rest import StressAtRest, UnlikeStress, stress_at_rest
+from dembound.disks.material.at_rest import AtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
@@ -324,11 +324,11 @@ class DiskBody(Scene):
         return intact_disks(self.case, self.intact_zones, self.disk_count, self.column_count)
 
     @cached_property
-    def at_rest(self) -> StressAtRest | UnlikeStress | None:
+    def at_rest(self) -> AtRest | None:
         """The stress of undisturbed ground with which contacts begin; None if they begin without forces."""
         return stress_at_rest(self.case, self.ground, self.surface)
 
-    def at_rest_of(self, part: str) -> StressAtRest | UnlikeStress | None:
+    def at_rest_of(self, part: str) -> AtRest | None:
         """The stress with which the contacts of a part begin: of a column that of the ground of its side."""
         seam = self.seams[COLUMNS.index(part)] if part in COLUMNS else None
         if seam is None or (self.surface is None and not self.case.is_unlike):

@@ -9,7 +9,7 @@ from dembound.boundaries import Boundary
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.roller import Roller
 from dembound.casefile.disks.model import DiskCase
-from dembound.disks.material.at_rest import StressAtRest, UnlikeStress, levels_of, stress_at_rest
+from dembound.disks.material.at_rest import AtRest, levels_of, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings, surroundings_of
 from dembound.disks.surroundings.edges import ON_IT
@@ -36,9 +36,7 @@ def level_at(surface: np.ndarray, seam: Seam) -> np.ndarray:
     return surface[:, [-1]] if seam.sides == ("right",) else surface[:, [0]]
 
 
-def rest_beside(
-    case: DiskCase, ground: PackedMaterial, seam: Seam, surface: np.ndarray | None
-) -> StressAtRest | UnlikeStress | None:
+def rest_beside(case: DiskCase, ground: PackedMaterial, seam: Seam, surface: np.ndarray | None) -> AtRest | None:
     """The stress at rest of a column: of the ground of its side below its own surface; None without one."""
     side, own = side_of(seam), None if surface is None else level_at(surface, seam)
     return stress_at_rest(case.beside(side), ground.beside(side), own)
@@ -50,9 +48,7 @@ def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
     return {**columns, "body": slice(columns_end(seams), count)}
 
 
-def levels_in(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: StressAtRest | UnlikeStress | None
-) -> np.ndarray | None:
+def levels_in(case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: AtRest | None) -> np.ndarray | None:
     """A number (n,) of each disk, the same for copies with the same constants; None if all copies have.
 
     Rows of bricks have constants of their own in layers, or under a history-dependent law with K0, and bricks of a row
@@ -84,9 +80,7 @@ def standing_of(
 ) -> tuple[Standing, ...]:
     """The free-field columns of a body: one, or one for each side where the ground left and right differs."""
     sides = case.column_sides
-    tops = {
-        side: Level.of(ground.beside(side), body, floors[side], side).height for side in sides if side in floors
-    }
+    tops = {side: Level.of(ground.beside(side), body, floors[side], side).height for side in sides if side in floors}
     highest, lowest = (of(tops.get(side, case.box[3]) for side in ("left", "right")) for of in (max, min))
     same = not case.is_unlike and highest - lowest <= ON_IT * ground.brick.mean_diameter
     if same or not {"left", "right"} <= {*sides}:

@@ -12,7 +12,7 @@ from dembound.boundaries.support import Edge
 from dembound.disks.body import DiskBody
 from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.pairs import PIECE, Piece
-from dembound.disks.material.at_rest import StressAtRest, UnlikeStress, gradients_of_stresses, rest_forces
+from dembound.disks.material.at_rest import AtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
@@ -93,7 +93,7 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
 
 def _at_rest(
     ground: PackedMaterial,
-    at_rest: StressAtRest | UnlikeStress,
+    at_rest: AtRest,
     ends: CutContacts,
     bonds: CutBonds,
     heights: np.ndarray,
@@ -101,7 +101,7 @@ def _at_rest(
 ) -> np.ndarray:
     """Forces and moments (3, e) of contact ends at heights (e,) m on their disks, in ground of one material.
 
-    x : (e,) m, their places, see `StressAtRest.at`.
+    x : (e,) m, their places, see `AtRest.at`.
     """
     if not at_rest.slides:
         pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights, x))

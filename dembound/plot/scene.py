@@ -242,7 +242,9 @@ def _one_below(sides: Sequence[LayersOfSide]) -> float:
     """Height y (m) below which two sides have the same layers."""
     left, right = sides
     lowest = math.inf
-    for one, other, *ends in zip(left.names[::-1], right.names[::-1], left.joints[::-1], right.joints[::-1], strict=False):
+    for one, other, *ends in zip(
+        left.names[::-1], right.names[::-1], left.joints[::-1], right.joints[::-1], strict=False
+    ):
         if one != other:
             break
         lowest = min(ends)

@@ -5,7 +5,7 @@ from typing import Any
 
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.ground import SIDEWAYS, lowered_in
-from dembound.casefile.disks.layer import THINNEST, Layer, bottoms, place_of, stack
+from dembound.casefile.disks.layer import Layer, bottoms, place_of, stack
 from dembound.casefile.disks.surface import LEVEL
 from dembound.casefile.messages import numbered
 from dembound.packings.base import TYPED, Packing
@@ -62,10 +62,12 @@ def _unlike_below(layers: Sequence[Layer], packing: Packing, foot: float, top: f
             return
         ends = zip(own, bottoms([layer for _, layer in own], top), strict=True)
         below.append([(number, end) for (number, _), end in ends if end < least - near])
-    must = f"must be the same at both sides from y = {least:.10g} m down, six diameters above the lower side of the disks"
+    must = (
+        f"must be the same at both sides from y = {least:.10g} m down, six diameters above the lower side of the disks"
+    )
     wrong = False
-    for side, ends in zip(SIDEWAYS, below, strict=True):
-        for number, _ in ends:
+    for side, found in zip(SIDEWAYS, below, strict=True):
+        for number, _ in found:
             if layers[number].side == side:
                 wrong = True
                 key = "thickness" if layers[number].bottom is None else "bottom"

@@ -130,15 +130,18 @@ class UnlikeStress:
         """Whether the packing can bear it so."""
         return all(side.is_borne for side in self.sides)
 
-    def at(self, heights: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Stress (3, k) xx, yy, xy in Pa at heights and places x (k,) m."""
+    def at(self, heights: np.ndarray, x: np.ndarray | None = None) -> np.ndarray:
+        """Stress (3, k) xx, yy, xy in Pa at heights and places x (k,) m, which are needed."""
+        assert x is not None
         left, right = (side.at(heights, x) for side in self.sides)
         return np.where(self.ground.is_right(x), right, left)
 
 
-def stress_at_rest(
-    case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None = None
-) -> StressAtRest | UnlikeStress | None:
+AtRest = StressAtRest | UnlikeStress
+"""The stress of undisturbed ground, by height or also by side."""
+
+
+def stress_at_rest(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None = None) -> AtRest | None:
     """The stress with which the contacts of a case begin, of either side where its layers differ; None without forces.
 
     Parameters as of `_level_stress`.
@@ -216,7 +219,7 @@ def pair_forces(ground: PackedMaterial) -> np.ndarray:
 
 def rest_forces(
     ground: PackedMaterial,
-    at_rest: StressAtRest | UnlikeStress,
+    at_rest: AtRest,
     kind: np.ndarray,
     heights: np.ndarray,
     x: np.ndarray | None = None,
@@ -253,9 +256,7 @@ def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
     return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
 
 
-def levels_of(
-    assembly: Assembly, ground: PackedMaterial, at_rest: StressAtRest | UnlikeStress | None
-) -> np.ndarray:
+def levels_of(assembly: Assembly, ground: PackedMaterial, at_rest: AtRest | None) -> np.ndarray:
     """A number (n,) of each disk, the same for copies of a brick under the same stress at rest: of one row of bricks.
 
     Below a surface that is not level only bricks below equal level parts of it have the same, and where the layers of
@@ -286,7 +287,7 @@ def levels_of(
 
 
 def stressed(
-    ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: StressAtRest | UnlikeStress | None
+    ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: AtRest | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Constants of contacts that begin under a stress at rest, the row of each contact (b,), and the slip of each row.
 

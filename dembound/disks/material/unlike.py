@@ -128,4 +128,3 @@ class UnlikeGround(LayeredGround):
         reach = float(np.abs(self.brick.vectors[:, 0]).max())
         on_right, on_left = left - reach > self.meet, left + float(self.brick.size[0]) + reach < self.meet
         return np.where(on_right, 1, np.where(on_left, 0, 2 + np.arange(len(left))))
-

@@ -220,7 +220,11 @@ def _in_layer(case: DiskCase, side: str, layer: str | None) -> DiskCase:
         raise CaseError(
             [f"boundary.{side}: meets several layers, and reflects by layer; name one of {', '.join(names)}"]
         )
-    number = case.layer_names.index(layer) if layer and layer in names else case.layer_at(case.box[3 if side == "top" else 1])
+    number = (
+        case.layer_names.index(layer)
+        if layer and layer in names
+        else case.layer_at(case.box[3 if side == "top" else 1])
+    )
     alone = case.uniform_at([case.box[3], *case.joints][number] - case.packing.radius)
     return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(whole))[0]}))
 

@@ -21,7 +21,8 @@ from dembound.disks.material.free_surface import mass_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.surroundings.cut_bonds import CutBonds
-from dembound.disks.surroundings.mesh import Level, Outline, box_of, mass_extent, medium_of, on_top
+from dembound.disks.surroundings.media import medium_of
+from dembound.disks.surroundings.mesh import Level, Outline, box_of, mass_extent, on_top
 from dembound.disks.surroundings.settings import Settings
 from dembound.disks.surroundings.wall import Wall, lag_of
 from dembound.errors import CaseError

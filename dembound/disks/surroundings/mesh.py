@@ -14,14 +14,13 @@ from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.axis import WHOLE, Around, divided
 from dembound.continuum.layer import LONG_WAVES
-from dembound.continuum.medium import Ground, Layered, Medium, Unlike, one_side
 from dembound.continuum.mesh import Mesh
 from dembound.disks.material.free_surface import inset
-from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.surroundings.edges import ON_IT
-from dembound.disks.surroundings.settings import Settings, least_element, mesh_of, settings_of
+from dembound.disks.surroundings.elements import mesh_of
+from dembound.disks.surroundings.media import medium_of
+from dembound.disks.surroundings.settings import Settings, least_element, settings_of
 from dembound.errors import CaseError
 from dembound.holes.hole import Floor
 from dembound.packings.tiling import Assembly
@@ -321,23 +320,6 @@ def _refuse_low(key: str, rim: Rim, least: float) -> None:
                     f"{'as high, or ' if low in surfaces else ''}{least_is}"
                 ]
             )
-
-
-def medium_of(ground: PackedMaterial) -> Ground:
-    """The continuum that a packing is equivalent to, with all six constants, by layer."""
-    if isinstance(ground, UnlikeGround):
-        left, right = (one_side(medium_of(side)) for side in ground.sides)
-        return Unlike(left, right)
-    if isinstance(ground, LayeredGround):
-        media = tuple(homogeneous(each.material) for each in ground.layers)
-        return Layered(media, tuple(each.low for each in ground.layers[1:]))
-    return homogeneous(ground)
-
-
-def homogeneous(ground: PackedMaterial) -> Medium:
-    """The continuum that one material is equivalent to."""
-    c = ground.material_tensor
-    return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
 
 
 def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:

@@ -13,7 +13,7 @@ from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.disks.static import can_break, keeps_forces
 from dembound.casefile.messages import counted
 from dembound.disks.contacts.layout import fill
-from dembound.disks.material.at_rest import StressAtRest, UnlikeStress
+from dembound.disks.material.at_rest import AtRest
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.frequencies import mean_frequency
@@ -132,7 +132,7 @@ def _static_facts(scene: DiskScene) -> Entries:
     yield "static sides", sides
 
 
-def _at_heights(scene: DiskScene, at_rest: StressAtRest | UnlikeStress) -> Iterator[str]:
+def _at_heights(scene: DiskScene, at_rest: AtRest) -> Iterator[str]:
     """The stress at rest at the top and bottom, in words; once where it is the same everywhere.
 
     Below a surface that is not level, or in layers that differ: at the bottom, once if both ends are alike.

@@ -1,4 +1,4 @@
-"""What is said of ground of two heights or of unlike layers: its columns, what free-field sides send back, and its stress at rest."""
+"""What is said of ground of two heights or unlike layers: columns, what free fields send back, and stress at rest."""
 
 import math
 from collections.abc import Iterator

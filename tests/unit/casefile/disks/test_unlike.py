@@ -56,8 +56,14 @@ ROLLERS = {side: {"type": "roller"} for side in ("left", "right", "bottom")}
         ({"ground.meet": None}, "layer[1].side: needs ground.meet, the x (m) at which"),
         ({"layer": [{}]}, 'ground.meet: no layer has side = "left" or "right"'),
         ({"ground.meet": 3.0}, "ground.meet: is 3, must be from 4 to 20 (m): four diameters from the sides"),
-        ({"layer": [LEFT | {"bottom": 5.0}, *OTHERS]}, "layer[1].bottom: is at the left only, but the ground must be the same at both sides"),
-        ({"layer": [LEFT, {"thickness": 13.0, "p_wave_speed": 800.0}, {}]}, "layer: common layers end at other heights at the left than at the right"),
+        (
+            {"layer": [LEFT | {"bottom": 5.0}, *OTHERS]},
+            "layer[1].bottom: is at the left only, but the ground must be the same at both sides",
+        ),
+        (
+            {"layer": [LEFT, {"thickness": 13.0, "p_wave_speed": 800.0}, {}]},
+            "layer: common layers end at other heights at the left than at the right",
+        ),
         ({"ground.size": [24.0, 20.0]}, "ground.size: is not allowed where the layers left and right"),
         ({"incident": {"type": "sv", "angle": 5.0, "wave": "w"}}, "incident: is not known where the layers left and"),
         ({"wave.w.motion": "within"}, 'wave.w.motion: is "within", which needs layers that are the same at both sides'),
