@@ -155,9 +155,9 @@ class BearingDashpots(Dashpots):
     bearing: bool | Bearing | None = quantity(
         None,
         unit="1",
-        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which bear "
-        "what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has an "
-        "intact zone",
+        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
+        "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
+        "an intact zone",
     )
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
@@ -166,7 +166,7 @@ class BearingDashpots(Dashpots):
         if self.bearing not in (None, False) and ("bar" in tables or not (side == "bottom" or self.needs_column)):
             yield f"boundary.{side}.bearing: is for the bottom of disks, and for free-field sides"
 
-    def dashpots_alone(self) -> Self:
+    def dashpots_alone(self) -> Dashpots:
         """The side without springs."""
         return self.model_copy(update={"bearing": False}) if self.bearing not in (None, False) else self
 

@@ -77,8 +77,8 @@ def test_the_ground_comes_to_rest_and_its_base_to_its_place() -> None:
     # 0.1 J is a mean velocity of 0.8 mm/s, 1/600 of the wave's
     assert found.kinetic[-1] < 0.1
     assert np.abs(found.drift).max() < 1e-5
-    # springs bear what has moved away from the sides: a twentieth of the weight, 0.2 MN, on those along the bottom, which
-    # are the softest, α_s G = 0.4 GPa; with the sides' it moves less
+    # springs bear what has moved away from the sides: a twentieth of the weight, 0.2 MN, on those along the bottom,
+    # which are the softest, α_s G = 0.4 GPa; with the sides' it moves less
     assert np.abs(found.base[-1]).max() < 5e-4
 
 

@@ -191,7 +191,7 @@ class DiskCase(Case):
 
     @property
     def bearing(self) -> dict[str, Bearing]:
-        """The springs of sides on the motion relative to the ground beyond them, by side; sides without are left out."""
+        """The springs of sides on their motion relative to the ground beyond, by side; sides without are left out."""
         found = {side: bearing_of(side, table, self.material, self.intact) for side, table in self.boundary.items()}
         return {side: each for side, each in found.items() if each is not None}
 

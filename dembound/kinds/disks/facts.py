@@ -250,8 +250,7 @@ def intact_facts(scene: DiskScene) -> Entries:
         for side, bearing in scene.case.bearing.items():
             by_side.setdefault(bearing, []).append(side)
         factors = ", ".join(
-            f"α_n {each.alpha_n:g} and α_s {each.alpha_s:g} at {' and '.join(sides)}"
-            for each, sides in by_side.items()
+            f"α_n {each.alpha_n:g} and α_s {each.alpha_s:g} at {' and '.join(sides)}" for each, sides in by_side.items()
         )
         stiffness = float(springs.stiffness[:, 1].sum())
         sags = ""
