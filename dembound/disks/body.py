@@ -10,7 +10,6 @@ import numpy as np
 from dembound.boundaries.edge import Edge
 from dembound.boundaries.half_mass import half_contacts, mass_factor
 from dembound.boundaries.support import Supports
-from dembound.casefile.disks.layer import stack
 from dembound.casefile.disks.load import FREE_FIELD
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
@@ -77,8 +76,8 @@ def layer_attributes(case: DiskCase) -> dict[str, Any]:
     names = {"layer_names": [*case.layer_names]}
     if not case.is_unlike:
         return names | {"joints": [*case.joints]}
-    own = {f"{side}_layers": [number + 1 for number, _ in stack(case.layer, side)] for side in ("left", "right")}
-    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in ("left", "right")}
+    own = {f"{side}_layers": [1 + number for number in case.numbers_beside(side)] for side in case.sides_of_ground}
+    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in case.sides_of_ground}
     return names | {"meet": case.ground.meet} | own | joints
 
 

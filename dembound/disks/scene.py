@@ -11,7 +11,6 @@ from dembound.boundaries.half_mass import half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.layer import stack
 from dembound.continuum.sizing import GridSizes
 from dembound.disks.bearing import Springs, bearing_springs, together
 from dembound.disks.body import DiskBody, with_half_contacts, with_layers
@@ -322,12 +321,9 @@ def ground_of(case: DiskCase) -> PackedMaterial:
         return confined(materials[0], case)
     if case.ground.meet is None:
         return _in_layers(case, materials)
-    numbers = [[number for number, _ in stack(case.layer, side)] for side in ("left", "right")]
-    sides = [
-        _in_layers(case.beside(side), [materials[number] for number in own])
-        for side, own in zip(("left", "right"), numbers, strict=True)
-    ]
-    return UnlikeGround.of(sides, numbers, case.ground.meet)
+    numbers = {side: case.numbers_beside(side) for side in case.sides_of_ground}
+    sides = [_in_layers(case.beside(side), [materials[number] for number in own]) for side, own in numbers.items()]
+    return UnlikeGround.of(sides, [*numbers.values()], case.ground.meet)
 
 
 def _in_layers(case: DiskCase, materials: Sequence[PackedMaterial]) -> LayeredGround:

@@ -111,6 +111,15 @@ class DiskCase(Case):
         """Whether the layers at the left and right differ, see `Ground.meet`."""
         return self.ground.meet is not None
 
+    @property
+    def sides_of_ground(self) -> tuple[str, ...]:
+        """The sides whose layers are those of all the ground, or of their part of it where these differ."""
+        return ("left", "right") if self.is_unlike else ("left",)
+
+    def numbers_beside(self, side: str) -> list[int]:
+        """Numbers, from 0, of the layers of the left or right side, from the surface down."""
+        return [number for number, _ in stack(self.layer, side)]
+
     def beside(self, side: str) -> "DiskCase":
         """The case with the layers of the left or right side everywhere; itself where these are one."""
         if not self.is_unlike:
@@ -124,7 +133,9 @@ class DiskCase(Case):
         Raises ValueError where it differs at the left and right, see `beside`.
         """
         if self.is_unlike:
-            one, other = (stack(self.layer, side)[self.beside(side).layer_at(height)][0] for side in ("left", "right"))
+            one, other = (
+                self.numbers_beside(side)[self.beside(side).layer_at(height)] for side in self.sides_of_ground
+            )
             if one != other:
                 raise ValueError(f"the layers at y = {height:g} m differ at both sides")
             return one
