@@ -71,7 +71,7 @@ class Grid:
 
     @classmethod
     def of(cls, scene: DiskScene, axis: int, beside: str = "left") -> Grid:
-        """The coarse grid of a scene for a wave along an axis; beside : the side whose layers it has, if they differ."""
+        """The coarse grid of a scene for a wave along an axis; beside : the side whose layers it has if unlike."""
         order, gradients = ([0, 1], [0, 1, 2, 3]) if axis == 1 else ([1, 0], [1, 0, 3, 2])
         ground, box = ground_beside(scene, beside), np.array(scene.case.packing.box)
         size = (box[2:] - box[:2])[order]
