@@ -138,18 +138,23 @@ class Rim(NamedTuple):
         for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
-                skins[side] = _skin(ground, side, box[3 if side == "top" else 1])  # left and right: of what is below
+                height = box[3 if side == "top" else 1]  # left and right: of what is below
+                skins[side] = _skin(ground, side, height, floors)
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
         if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
             _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
-            skins["top"] = _skin(ground, "top", case.box[3])
+            skins["top"] = _skin(ground, "top", case.box[3], floors)
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
         levels = {
             side: Level.of(ground.beside(side), body, floor, side) for side, floor in floors.items() if side in sides
         }
+        heights = [level.height for level in levels.values()]
+        if len(heights) == 2 and np.ptp(heights) <= ON_IT * ground.brick.mean_diameter:  # skins of unlike layers differ
+            mean = 0.5 * sum(level.surface for level in levels.values())
+            levels = {side: level._replace(surface=mean) for side, level in levels.items()}
         left, bottom, right, top = box
         return cls((left, bottom, right, top), surface, skins, massless, levels)
 
@@ -239,9 +244,13 @@ class Outline(NamedTuple):
         return cls(("bottom",), size, rim, own)
 
 
-def _skin(ground: PackedMaterial, side: str, height: float) -> float:
-    """Depth (m) of the skin at a side at a height, m; where the layers at both sides differ the mean of theirs."""
-    return 0.5 * sum(ground.beside(each).at(height).skin(side) for each in ("left", "right"))
+def _skin(ground: PackedMaterial, side: str, height: float, floors: Mapping[str, Floor]) -> float:
+    """Depth (m) of the skin at a side at a height, m.
+
+    Where layers differ, those of the side without a floor, or the mean of both: the edge of the continuum is level.
+    """
+    each = [beside for beside in ("left", "right") if beside not in floors] or ["left", "right"]
+    return sum(ground.beside(beside).at(height).skin(side) for beside in each) / len(each)
 
 
 def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
