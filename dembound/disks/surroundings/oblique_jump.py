@@ -27,7 +27,7 @@ from dembound.continuum.medium import strain_of
 from dembound.continuum.part import GridBody
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import UnlikeWaves
-from dembound.disks.surroundings.jump import depths_on_slit, elements_on_slit
+from dembound.disks.surroundings.jump import depths_on_slit, elements_on_slit, weights_on_slit
 from dembound.exact.transform import Histories
 from dembound.waves.wave import Wave
 
@@ -56,8 +56,9 @@ class SlitElements:
         mesh = self.body.mesh
         stiff, pull = self._matrices(omega)
         count = pull.shape[1] // 2
+        mass = self.body.ground.only.density * weights_on_slit(self.body)
         stepped = (2.0 / self.time_step * np.sin(0.5 * omega * self.time_step)) ** 2
-        stiff -= stepped[:, None, None] * np.diag(np.repeat(self._mass, 2))
+        stiff -= stepped[:, None, None] * np.diag(np.repeat(mass, 2))
         top = slice(2 * count - 2, 2 * count)
         free = np.repeat(~mesh.held[mesh.doubled[0]], 2)
         free[top] = False
@@ -67,63 +68,47 @@ class SlitElements:
         shape = len(omega), count, 2, 2
         return moved.reshape(shape), (pull @ moved).reshape(shape)
 
-    @property
-    def _weights(self) -> np.ndarray:
-        """(e, N) m², of the quadrature of each element times the thickness."""
-        mesh = self.body.mesh
-        heights = mesh.element_sizes[elements_on_slit(mesh), 1]
-        return np.asarray(0.5 * self.body.thickness * heights[:, None] * mesh.rule.weights)
+    def _factors(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of derivatives along y and x in the absorbing layer, and u + τv over u, (k, n) each at the nodes."""
+        q, profile = depths_on_slit(self.body.mesh), self.body.profile("bottom")
+        up, along, later = np.ones((3, len(omega), len(q)), dtype=complex)
+        if profile is None:
+            return up, along, later
+        back = np.exp(-1j * omega * self.time_step)[:, None]  # a step earlier
 
-    @property
-    def _lines(self) -> np.ndarray:
-        """(e, N) nodes of each element."""
-        mesh = self.body.mesh
-        return mesh.order * mesh.elements[elements_on_slit(mesh), 1][:, None] + np.arange(mesh.order + 1)
+        def stretched(part: float | np.ndarray) -> np.ndarray:
+            gain, decay = (of(q, self.time_step, part) for of in (profile.gain, profile.decay))
+            return np.asarray(1.0 + gain / (1.0 - decay * back))
 
-    @property
-    def _mass(self) -> np.ndarray:
-        """(n,) kg/m along x, of the nodes."""
-        lines, mass = self._lines, np.zeros(len(self.body.mesh.doubled[0]))
-        np.add.at(mass, lines, self._weights * self.body.ground.only.density)
-        return mass
+        up = stretched(1.0)
+        if profile.is_stretched_along:
+            along = stretched(profile.part_along(q))
+        return up, along, 1.0 + profile.delay(q, self.time_step) * (1.0 - back) / self.time_step
 
     def _matrices(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Matrices (k, 2n, 2n) from nodal motion to nodal forces against it, and to nodal traction across x."""
-        mesh, medium = self.body.mesh, self.body.ground.only
-        q, profile = depths_on_slit(mesh), self.body.profile("bottom")
-        back = np.exp(-1j * omega * self.time_step)[:, None]  # a step earlier
-        up, along = np.ones((2, len(omega), len(q)), dtype=complex)
-        late = up
-        if profile is not None:
-            late = 1.0 + profile.delay(q, self.time_step) * (1.0 - back) / self.time_step
-
-            def stretched(part: float | np.ndarray) -> np.ndarray:
-                gain, decay = (of(q, self.time_step, part) for of in (profile.gain, profile.decay))
-                return np.asarray(1.0 + gain / (1.0 - decay * back))
-
-            up = stretched(1.0)
-            if profile.is_stretched_along:
-                along = stretched(profile.part_along(q))
-        across, rising = strain_of(1.0, 0.0), strain_of(0.0, 1.0)
-        c = medium.matrix
-        xx, xy, yy = across.T @ c @ across, across.T @ c @ rising, rising.T @ c @ rising
-        sideways = -1j * omega[:, None] * self.slowness * along
-        stiff, pull = np.zeros((2, len(omega), len(q), 2, len(q), 2), dtype=complex)
-        heights = mesh.element_sizes[elements_on_slit(mesh), 1]
-        for own, weight, height in zip(self._lines, self._weights, heights, strict=True):
-            slope = 2.0 / height * mesh.rule.derivative
-            s, x, tau = up[:, own], sideways[:, own], late[:, own]
-            moving = tau[:, :, None] * np.eye(len(own))
-            steep = s[:, :, None] * slope * tau[:, None]  # ∂/∂y at points, of nodes
-            aside = x[:, :, None] * moving
-            at = np.ix_(range(len(omega)), own, range(2), own, range(2))
-            across_x = np.einsum("ab,kij->kiajb", xx, aside) + np.einsum("ab,kij->kiajb", xy, steep)
-            across_y = np.einsum("ab,kij->kiajb", xy.T, aside) + np.einsum("ab,kij->kiajb", yy, steep)
-            weighed = weight[:, None, None, None]
-            pull[at] += weighed * across_x
-            stiff[at] -= weighed * x[:, :, None, None, None] * across_x
-            stiff[at] += np.einsum("ki,qi,kqajb->kiajb", s, slope, weighed * across_y)
-        return tuple(each.reshape(len(omega), 2 * len(q), 2 * len(q)) for each in (stiff, pull))
+        mesh, across, rising = self.body.mesh, strain_of(1.0, 0.0), strain_of(0.0, 1.0)
+        of_x, of_y = across.T @ self.body.ground.only.matrix, rising.T @ self.body.ground.only.matrix
+        up, along, later = self._factors(omega)
+        aside = -1j * omega[:, None] * self.slowness * along  # ∂/∂x
+        stiff, pull = np.zeros((2, *up.shape, 2, up.shape[1], 2), dtype=complex)
+        for element in elements_on_slit(mesh):
+            height, row = float(mesh.element_sizes[element, 1]), int(mesh.elements[element, 1])
+            own = slice(mesh.order * row, mesh.order * (row + 1) + 1)
+            weight, slope = 0.5 * self.body.thickness * height * mesh.rule.weights, 2.0 / height * mesh.rule.derivative
+            s, x, late = up[:, own], aside[:, own], later[:, None, own]
+            along_x, along_y = x[:, :, None] * np.eye(mesh.order + 1) * late, s[:, :, None] * slope * late
+            x_stress, y_stress = (
+                np.einsum("i,ab,kij->kiajb", weight, c @ across, along_x)
+                + np.einsum("i,ab,kij->kiajb", weight, c @ rising, along_y)
+                for c in (of_x, of_y)
+            )
+            pull[:, own, :, own] += x_stress
+            stiff[:, own, :, own] += (
+                np.einsum("ki,qi,kqajb->kiajb", s, slope, y_stress) - x[:, :, None, None, None] * x_stress
+            )
+        shape = len(omega), 2 * up.shape[1], 2 * up.shape[1]
+        return stiff.reshape(shape), pull.reshape(shape)
 
 
 class ObliqueJump:
