@@ -23,7 +23,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.continuum.medium import strain_of
+from dembound.continuum.medium import strain_of, vertical_slownesses
 from dembound.continuum.part import GridBody
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import UnlikeWaves
@@ -31,8 +31,18 @@ from dembound.disks.surroundings.jump import depths_on_slit, elements_on_slit, w
 from dembound.exact.transform import Histories
 from dembound.waves.wave import Wave
 
-AT_ONCE = 1000
-"""Frequencies whose equations are solved together."""
+PER_TURN = 24
+"""Frequencies per turn of the phase of waves that run down the slit, at which its elements are solved.
+
+Splines between them are exact to (2π/24)⁴/384 = 1e-5. Below the first one they are `CLOSER` to each other, as a layer
+is soft for slow motion.
+"""
+
+CLOSER, LEAST = 2.0**0.125, 0.1
+"""Ratio of such neighbouring frequencies, and the lowest one over the decay of signals in the window."""
+
+FAINT = 1e-5
+"""Amplitude over the largest one of a wave above whose last frequency with it nothing jumps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,17 +156,35 @@ class ObliqueJump:
 
     def _sampled(self, of: Literal["rate", "pull"], time_step: float) -> np.ndarray:
         """Samples (s, 2m) of rates or forces."""
+        from scipy.interpolate import CubicSpline
+
         window = self._histories.window
-        omega = 2.0 * np.pi * window.frequencies
-        column = SlitElements(self._body, self._slowness, time_step)
-        top = window.derived(0)[:, None] * np.exp(-1j * np.outer(omega, self._delays)) @ self._motions
-        values = np.zeros((len(omega), 2, len(self.moving)), dtype=complex)
-        for begin in range(0, len(omega), AT_ONCE):
-            some = slice(begin, begin + AT_ONCE)
-            each = column.below(omega[some])[int(of == "pull")][:, self.moving]
-            values[some] = np.einsum("knab,kb->kan", each, top[some])
+        size = np.abs(window.spectrum)
+        last = int(np.flatnonzero(size >= FAINT * size.max()).max(initial=0)) + 1
+        frequencies = window.frequencies[:last]
+        frequencies = frequencies[frequencies.real < 0.5 / time_step]  # steps have no higher ones
+        omega = 2.0 * np.pi * frequencies
+        top = window.derived(0)[: len(omega), None] * np.exp(-1j * np.outer(omega, self._delays)) @ self._motions
         factors = -np.ones_like(omega) if of == "pull" else (np.exp(1j * omega * time_step) - 1.0) / time_step
-        return np.stack([window.sampled(factors * each) for each in values.reshape(len(omega), -1).T], axis=1)
+        few = self._few(frequencies)
+        column = SlitElements(self._body, self._slowness, time_step)
+        slow = 1j * frequencies[0].imag
+        solved = self._histories.kept(time_step, lambda: np.stack(column.below(2.0 * np.pi * (few + slow))))
+        samples = []
+        for node in self.moving:
+            each = CubicSpline(few, solved[int(of == "pull")][:, node])(frequencies.real)
+            samples += [window.sampled(factors * along) for along in np.einsum("kab,kb->ak", each, top)]
+        return np.stack([*samples[::2], *samples[1::2]], axis=1)
+
+    def _few(self, frequencies: np.ndarray) -> np.ndarray:
+        """Real parts (k,) Hz of few frequencies that span those of a window."""
+        mesh = self._body.mesh
+        depth = float(np.ptp(mesh.positions[mesh.doubled[0], 1]))
+        steepest = float(np.abs(vertical_slownesses(self._body.ground.only, self._slowness)).max())
+        apart = 1.0 / (PER_TURN * depth * steepest)
+        even = np.arange(8.0 * apart, float(frequencies[-1].real) + 9.0 * apart, apart)
+        closer = np.log(even[0] / (LEAST * -float(frequencies[0].imag))) / np.log(CLOSER)
+        return np.concatenate([[0.0], even[0] / CLOSER ** np.arange(np.ceil(closer), 0.0, -1.0), even])
 
 
 @dataclass(frozen=True)
