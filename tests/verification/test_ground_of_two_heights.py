@@ -95,16 +95,51 @@ def test_near_sides_leave_the_motion_as_it_is(lab, kind: str) -> None:
 
 @pytest.mark.parametrize("kind", ["sv", pytest.param("p", marks=pytest.mark.slow)])
 def test_so_do_near_sides_under_a_wave_at_an_angle(lab, kind: str) -> None:
-    """The jump is that of the reflected waves: SV waves of 40 diameters at 30° have errors of 0.2 %, P waves of 0.4 %.
+    """The jump is that of the reflected waves: waves of 40 diameters at 30° have errors of 0.09 (SV) and 0.15 % (P).
 
-    Errors that it catches are in benchmarks/single_edits.toml.
+    With the jump of plane waves alone, which does not come back from the end of the absorbing layer, they are 0.2 and
+    0.4 %. Errors that it catches are in benchmarks/single_edits.toml.
     """
-    wave = {"type": kind, "angle": 30.0, "wave": "pulse", "point": [0.0, 0.0]}
-    period = 40.0 / (1000.0 / np.sqrt(2.0) if kind == "sv" else 1000.0)
-    changes = {"incident": wave, "wave.pulse.start": 0.06, "wave.pulse.period": period, "run.duration": 0.17}
+    changes = at_an_angle(kind)
     wide, own = (slope(lab, points, "", **changes) for points in (VALLEY, near(10.0)))
     step = choose_step(build(wide))[0]
-    assert error(velocities(own, step), velocities(wide, step)) < 5e-3
+    assert error(velocities(own, step), velocities(wide, step)) < 1.8e-3
+
+
+def at_an_angle(kind: str) -> dict:
+    """Changes for a wave of 40 diameters at 30°."""
+    wave = {"type": kind, "angle": 30.0, "wave": "pulse", "point": [0.0, 0.0]}
+    period = 40.0 / (1000.0 / np.sqrt(2.0) if kind == "sv" else 1000.0)
+    return {"incident": wave, "wave.pulse.start": 0.06, "wave.pulse.period": period, "run.duration": 0.17}
+
+
+def test_level_ground_has_no_jump_under_a_wave_at_an_angle(lab) -> None:
+    """Below the top of its box it is ground of two heights that are equal, and moves as one that fills its box."""
+    level = [(0.0, 12.0), (20.0, 12.0)]
+    whole, below = (slope(lab, level, "", **at_an_angle("sv"), **{"packing.size": [20.0, y]}) for y in (12.0, 13.0))
+    assert len(build(below).outside.body.mesh.doubled[0])
+    step = choose_step(build(below))[0]
+    places = [(0.5, 11.5), (10.5, 11.5), (19.5, 0.5)]
+    own = velocities(below, step, places)
+    assert np.abs(own).max() > 1.0
+    # rounding of forces that are summed in another order, each step
+    assert np.abs(own - velocities(whole, step, places)).max() < 1e-11
+
+
+def test_weight_and_a_wave_at_an_angle_add(lab) -> None:
+    """After a static stage ground of one elastic material moves as without weight, to rounding."""
+    held = {side: {"type": "roller"} for side in ("left", "right", "bottom")}
+    wave = slope(lab, near(10.0), "", **at_an_angle("p"))
+    both = with_changes(wave, {"load": [WEIGHT], "static": {"k0": 0.6, "boundary": held}})
+    scene = build(both)
+    own, alone = lab.simulation(scene, settle(scene).start), lab.simulation(build(wave))
+    for _ in range(4):
+        velocity = []
+        for simulation in (own, alone):
+            simulation.run(simulation.state.step + 100)
+            velocity.append(simulation.state.velocity)
+        assert np.abs(velocity[0] - velocity[1]).max() < 1e-10
+    assert np.abs(velocity[1]).max() > 0.1
 
 
 @pytest.mark.parametrize(

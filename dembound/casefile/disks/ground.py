@@ -172,7 +172,6 @@ def _oblique_beside(tables: Mapping[str, Any], where: str) -> Iterator[str]:
         "quality_factor": any(
             table and table.quality_factor is not None for table in (tables["material"], *tables["layer"])
         ),
-        "a [static] stage": tables["static"] is not None,
     }
     for what in (name for name, there in others.items() if there):
         yield (

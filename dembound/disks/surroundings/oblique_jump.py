@@ -1,9 +1,15 @@
-"""The jump between the waves at both sides of ground of two heights under a wave at an angle, in closed form.
+"""The jump between the waves at both sides of ground of two heights under a wave at an angle.
 
 Left and right of the slit of the continuum (kernels/jump.py) the undisturbed ground has the same incident wave, but
-waves reflected by surfaces of unlike heights, which only run down. So D is their difference; in an absorbing layer
-(continuum/layer.py) a wave with the vertical slowness p_y is filtered by exp(−|p_y| ∫ σ iω/(α + iω) dy), and the
-traction of a wave with the motion m and the displacement g is −ġ C(m, p)·x̂.
+waves reflected by surfaces of unlike heights, which only run down. At the top of the slit the jump D is their
+difference in closed form. Below it D is the motion of the elements beside the slit under this motion of their top,
+with the stretched derivatives of their absorbing layer and its end at rest (continuum/layer.py), and with the steps of
+the run. All its parts have one slowness p along x, so that derivatives along x are −p ∂/∂t of it, and elements of one
+dimension suffice: at each frequency, with nodes U_j, strains ε = (S ∂_y A_y − iωp A_x) L U and mass m,
+
+    −(2/Δt sin ½ωΔt)² m U = −∫ (S ∂_y A_y − iωp A_x)ᴴ σ dy,
+
+where S is the transform of the convolution in a layer, L that of u + τv. The traction on x = const is σ(D)·x̂.
 
 The rotations of the nodes on the slit, which elements do not have, carry dD/dt: its x component that of the nodes left
 of the slit, its y component that of their copies.
@@ -11,140 +17,197 @@ of the slit, its y component that of their copies.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from dembound.boundaries.support import Incident, SupportBuilder
-from dembound.continuum.layer import Profile
-from dembound.continuum.medium import ElasticPlaneWave, Medium
+from dembound.boundaries.support import SupportBuilder
+from dembound.continuum.medium import strain_of, vertical_slownesses
+from dembound.continuum.part import GridBody
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import UnlikeWaves
-from dembound.disks.surroundings.jump import depths_on_slit, weights_on_slit
+from dembound.disks.surroundings.jump import depths_on_slit, elements_on_slit, weights_on_slit
+from dembound.exact.transform import Histories
 from dembound.waves.wave import Wave
 
-SAMPLES = 64
-"""Samples of filtered velocities per period of the highest frequency of a wave; straight lines join them."""
+PER_TURN = 24
+"""Frequencies per turn of the phase of waves that run down the slit, at which its elements are solved.
 
-MOST = 1e4
-"""Largest frequency (Hz) that is sampled for, of waves that jump."""
+Splines between them are exact to (2π/24)⁴/384 = 1e-5. Below the first one they are `CLOSER` to each other, as a layer
+is soft for slow motion.
+"""
 
-SETTLED = 8.0
-"""Time after a run, in 1/α, over which the spectrum of a filtered velocity goes on, so that its end is not met."""
+CLOSER, LEAST = 2.0**0.125, 0.1
+"""Ratio of such neighbouring frequencies, and the lowest one over the decay of signals in the window."""
 
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(24)
-"""Of the integral over the depth of a layer."""
+FAINT = 1e-5
+"""Amplitude over the largest one of a wave above whose last frequency with it nothing jumps."""
 
 
-class Filtered:
-    """ġ of a wave at depths of an absorbing layer.
+@dataclass(frozen=True, eq=False)
+class SlitElements:
+    """The elements beside a slit, n nodes from the bottom, whose motion has one slowness along x.
+
+    Attributes
+    ----------
+    body : the continuum. slowness : p, s/m. time_step : Δt of the run, s.
+    """
+
+    body: GridBody
+    slowness: float
+    time_step: float
+
+    def below(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motion (k, n, 2, 2) and nodal traction across x, N/m, of all nodes per unit of motion at their top.
+
+        omega : (k,) rad/s, which may be complex.
+        """
+        mesh = self.body.mesh
+        stiff, pull = self._matrices(omega)
+        count = pull.shape[1] // 2
+        mass = self.body.ground.only.density * weights_on_slit(self.body)
+        stepped = (2.0 / self.time_step * np.sin(0.5 * omega * self.time_step)) ** 2
+        stiff -= stepped[:, None, None] * np.diag(np.repeat(mass, 2))
+        top = slice(2 * count - 2, 2 * count)
+        free = np.repeat(~mesh.held[mesh.doubled[0]], 2)
+        free[top] = False
+        moved = np.zeros((len(omega), 2 * count, 2), dtype=complex)
+        moved[:, top] = np.eye(2)
+        moved[:, free] = np.linalg.solve(stiff[:, free][:, :, free], -stiff[:, free, top])
+        shape = len(omega), count, 2, 2
+        return moved.reshape(shape), (pull @ moved).reshape(shape)
+
+    def _factors(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of derivatives along y and x in the absorbing layer, and u + τv over u, (k, n) each at the nodes."""
+        q, profile = depths_on_slit(self.body.mesh), self.body.profile("bottom")
+        up, along, later = np.ones((3, len(omega), len(q)), dtype=complex)
+        if profile is None:
+            return up, along, later
+        back = np.exp(-1j * omega * self.time_step)[:, None]  # a step earlier
+
+        def stretched(part: float | np.ndarray) -> np.ndarray:
+            gain, decay = (of(q, self.time_step, part) for of in (profile.gain, profile.decay))
+            return np.asarray(1.0 + gain / (1.0 - decay * back))
+
+        up = stretched(1.0)
+        if profile.is_stretched_along:
+            along = stretched(profile.part_along(q))
+        return up, along, 1.0 + profile.delay(q, self.time_step) * (1.0 - back) / self.time_step
+
+    def _matrices(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Matrices (k, 2n, 2n) from nodal motion to nodal forces against it, and to nodal traction across x."""
+        mesh, across, rising = self.body.mesh, strain_of(1.0, 0.0), strain_of(0.0, 1.0)
+        of_x, of_y = across.T @ self.body.ground.only.matrix, rising.T @ self.body.ground.only.matrix
+        up, along, later = self._factors(omega)
+        aside = -1j * omega[:, None] * self.slowness * along  # ∂/∂x
+        stiff, pull = np.zeros((2, *up.shape, 2, up.shape[1], 2), dtype=complex)
+        for element in elements_on_slit(mesh):
+            height, row = float(mesh.element_sizes[element, 1]), int(mesh.elements[element, 1])
+            own = slice(mesh.order * row, mesh.order * (row + 1) + 1)
+            weight, slope = 0.5 * self.body.thickness * height * mesh.rule.weights, 2.0 / height * mesh.rule.derivative
+            s, x, late = up[:, own], aside[:, own], later[:, None, own]
+            along_x, along_y = x[:, :, None] * np.eye(mesh.order + 1) * late, s[:, :, None] * slope * late
+            x_stress, y_stress = (
+                np.einsum("i,ab,kij->kiajb", weight, c @ across, along_x)
+                + np.einsum("i,ab,kij->kiajb", weight, c @ rising, along_y)
+                for c in (of_x, of_y)
+            )
+            pull[:, own, :, own] += x_stress
+            stiff[:, own, :, own] += (
+                np.einsum("ki,qi,kqajb->kiajb", s, slope, y_stress) - x[:, :, None, None, None] * x_stress
+            )
+        shape = len(omega), 2 * up.shape[1], 2 * up.shape[1]
+        return stiff.reshape(shape), pull.reshape(shape)
+
+
+class ObliqueJump:
+    """D and its traction at the nodes of a slit in time.
 
     Parameters
     ----------
-    wave : of the case. slowness : |p_y|, s/m. profile : of the layer. depths : (d,) over its thickness. until : s.
+    outside : the continuum with the slit. ground : the motion at both sides. until : last time, s.
     """
 
-    def __init__(self, wave: Wave, slowness: float, profile: Profile, depths: np.ndarray, until: float) -> None:
-        from scipy.fft import next_fast_len
+    def __init__(self, outside: Surroundings, ground: UnlikeWaves, until: float) -> None:
+        body = self._body = outside.body
+        self.moving = np.flatnonzero(~body.mesh.held[body.mesh.doubled[0]])
+        """(m,) nodes of the slit that move, from the bottom."""
+        corner = body.mesh.positions[body.mesh.doubled[0][-1:]]
+        reflected = [
+            (sign * np.array(wave.motion), float(wave.delays(corner)[0]))
+            for sign, side in ((1.0, ground), (-1.0, ground.right))
+            for wave in side.waves[1:]  # the incident one is in both
+        ]
+        self._motions = np.array([motion for motion, _ in reflected])
+        delays = np.array([delay for _, delay in reflected])
+        self._first = float(delays.min())
+        self._delays, self._slowness = delays - self._first, ground.waves[0].slowness[0]
+        signal = ground.signals[0]
+        assert isinstance(signal, Wave)
+        self._histories = Histories(signal.velocity, signal.begin(), until - self._first)
 
-        step = 1.0 / (SAMPLES * min(wave.highest_frequency(), MOST))
-        longest = until + SETTLED / float(profile.shift(np.zeros(1))[0])
-        self._times = wave.begin() + step * np.arange(next_fast_len(int(np.ceil((longest - wave.begin()) / step)) + 1))
-        spectrum = np.fft.rfft(wave.velocity(self._times))
-        omega = 2j * np.pi * np.fft.rfftfreq(len(self._times), step)
-        q = 0.5 * depths[:, None] * (1.0 + POINTS)
-        share = 0.5 * depths[:, None] * WEIGHTS * profile.thickness * profile.damping(q)
-        passed = np.einsum("dp,dpf->df", share, omega / (profile.shift(q)[:, :, None] + omega))
-        self._values = np.fft.irfft(spectrum * np.exp(-slowness * passed), len(self._times))
+    def at(self, of: Literal["rate", "pull"], times: np.ndarray, time_step: float) -> np.ndarray:
+        """Rates dD/dt (k, 2m) m/s half a step after times (k,) s, or forces −T, N, at them; first all along x."""
+        late = times - self._first
+        self._histories.reach(late)
+        samples = self._histories.kept((of, time_step), lambda: self._sampled(of, time_step))
+        return self._histories.between(samples, late)
 
-    @property
-    def count(self) -> int:
-        """Number of depths."""
-        return len(self._values)
+    def _sampled(self, of: Literal["rate", "pull"], time_step: float) -> np.ndarray:
+        """Samples (s, 2m) of rates or forces."""
+        from scipy.interpolate import CubicSpline
 
-    def at(self, times: np.ndarray) -> np.ndarray:
-        """ġ (k, d) at times (k, d) s, of each depth."""
-        each = zip(times.T, self._values, strict=True)
-        return np.stack([np.interp(t, self._times, values, left=0.0) for t, values in each], axis=1)
+        window = self._histories.window
+        size = np.abs(window.spectrum)
+        last = int(np.flatnonzero(size >= FAINT * size.max()).max(initial=0)) + 1
+        frequencies = window.frequencies[:last]
+        frequencies = frequencies[frequencies.real < 0.5 / time_step]  # steps have no higher ones
+        omega = 2.0 * np.pi * frequencies
+        top = window.derived(0)[: len(omega), None] * np.exp(-1j * np.outer(omega, self._delays)) @ self._motions
+        factors = -np.ones_like(omega) if of == "pull" else (np.exp(1j * omega * time_step) - 1.0) / time_step
+        few = self._few(frequencies)
+        column = SlitElements(self._body, self._slowness, time_step)
+        slow = 1j * frequencies[0].imag
+        solved = self._histories.kept(time_step, lambda: np.stack(column.below(2.0 * np.pi * (few + slow))))
+        samples = []
+        for node in self.moving:
+            each = CubicSpline(few, solved[int(of == "pull")][:, node])(frequencies.real)
+            samples += [window.sampled(factors * along) for along in np.einsum("kab,kb->ak", each, top)]
+        return np.stack([*samples[::2], *samples[1::2]], axis=1)
+
+    def _few(self, frequencies: np.ndarray) -> np.ndarray:
+        """Real parts (k,) Hz of few frequencies that span those of a window."""
+        mesh = self._body.mesh
+        depth = float(np.ptp(mesh.positions[mesh.doubled[0], 1]))
+        steepest = float(np.abs(vertical_slownesses(self._body.ground.only, self._slowness)).max())
+        apart = 1.0 / (PER_TURN * depth * steepest)
+        even = np.arange(8.0 * apart, float(frequencies[-1].real) + 9.0 * apart, apart)
+        closer = np.log(even[0] / (LEAST * -float(frequencies[0].imag))) / np.log(CLOSER)
+        return np.concatenate([[0.0], even[0] / CLOSER ** np.arange(np.ceil(closer), 0.0, -1.0), even])
 
 
+@dataclass(frozen=True)
 class JumpSignals:
-    """A sum of plane waves at the nodes of a slit, as signals: factors times ġ at their delays.
+    """Rates or forces of a jump as signals: two for each node, first all along x."""
 
-    Parameters
-    ----------
-    factors : (w, 2) of each wave, along x and y; shares : (n,) of each node. delays : (w, n) s. signals : of each wave;
-    filtered : the same at the first nodes, in an absorbing layer, as many as it has depths; none without a layer.
-    ahead : whether values are those half a step later, as of prescribed velocities.
-    """
-
-    def __init__(
-        self,
-        factors: np.ndarray,
-        shares: np.ndarray,
-        delays: np.ndarray,
-        signals: Sequence[Incident],
-        filtered: Sequence[Filtered],
-        *,
-        ahead: bool,
-    ) -> None:
-        self._factors, self._shares, self._delays = factors, shares, delays
-        self._signals, self._filtered, self._ahead = signals, filtered, ahead
+    jump: ObliqueJump
+    of: Literal["rate", "pull"]
 
     @property
     def count(self) -> int:
-        """Number of signals: two for each node, first all along x."""
-        return 2 * self._delays.shape[1]
+        """Number of signals."""
+        return 2 * len(self.jump.moving)
 
     def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Values (k, 2n) at times (k,) s of steps."""
-        at = times[:, None] + half_step * self._ahead
-        values = np.zeros((2, len(times), self._delays.shape[1]))
-        for number, (factor, delays, signal) in enumerate(zip(self._factors, self._delays, self._signals, strict=True)):
-            own = signal.velocity(at - delays)
-            if self._filtered:
-                late = self._filtered[number].at(at - delays[: self._inside])
-                own[:, : self._inside] = late
-            values += factor[:, None, None] * own
-        return np.concatenate(list(values * self._shares), axis=1)
-
-    @property
-    def _inside(self) -> int:
-        """Number of nodes in an absorbing layer."""
-        return self._filtered[0].count if self._filtered else 0
+        """Values (k, count) at times (k,) s of steps, rates half a step later."""
+        return self.jump.at(self.of, times, 2.0 * half_step)
 
 
 def let_jump(outside: Surroundings, ground: UnlikeWaves, until: float, builder: SupportBuilder) -> None:
     """Add the jump between both sides of a slit, and its traction, until a time (s) to the support table."""
-    body, mesh = outside.body, outside.body.mesh
-    own, copies = mesh.doubled
-    moving = np.flatnonzero(~mesh.held[own])
-    places, weight = mesh.positions[own[moving]], weights_on_slit(body)[moving]
-    profile, q = body.profile("bottom"), depths_on_slit(mesh)[moving]
-    inside = q[q > 0.0]
-    motions, tractions, delays, waves, filtered = [], [], [], [], []
-    for sign, side in ((1.0, ground), (-1.0, ground.right)):
-        for wave, signal in zip(side.waves[1:], side.signals[1:], strict=True):  # the incident one is in both
-            motions.append(sign * np.array(wave.motion))
-            tractions.append(sign * traction_across(ground.medium, wave))
-            delays.append(wave.delays(places))
-            waves.append(signal)
-            if profile is not None:
-                assert isinstance(signal, Wave)
-                last = until - min(float(delays[-1].min()), 0.0)
-                filtered.append(Filtered(signal, abs(wave.slowness[1]), profile, inside, last))
-    of_motion, of_traction, late = np.array(motions), np.array(tractions), np.array(delays)
-    rates = JumpSignals(of_motion, np.ones(len(moving)), late, waves, filtered, ahead=True)
-    pulls = JumpSignals(of_traction, weight, late, waves, filtered, ahead=False)
-    nodes = outside.first + own[moving]
+    jump = ObliqueJump(outside, ground, until)
+    nodes, copies = (outside.first + each[jump.moving] for each in outside.body.mesh.doubled)
     builder.side = ""
-    builder.add_motion(np.concatenate([nodes, outside.first + copies[moving]]), 2, rates)
-    builder.add_forces(np.tile(nodes, 2), np.repeat([0, 1], len(nodes)), pulls)
-
-
-def traction_across(medium: Medium, wave: ElasticPlaneWave) -> np.ndarray:
-    """−σ·x̂ (2,) of a plane wave per unit of ġ, Pa·s/m: with u = m g(t − p·x), ∂u_a/∂b = −m_a p_b ġ."""
-    (mx, my), (px, py) = wave.motion, wave.slowness
-    strain = np.array([mx * px, my * py, mx * py + my * px])
-    xx, _, xy = medium.matrix @ strain
-    return np.array([xx, xy])
+    builder.add_motion(np.concatenate([nodes, copies]), 2, JumpSignals(jump, "rate"))
+    builder.add_forces(np.tile(nodes, 2), np.repeat([0, 1], len(nodes)), JumpSignals(jump, "pull"))

@@ -190,7 +190,8 @@ def test_beside_a_floor_waves_rise_and_loads_on_all_disks_need_a_stage() -> None
     where = (
         "where the ground beyond a side is lower than the disks, with its surface at y = 11.5 m beyond the right side"
     )
-    assert problems_in(lambda: sloped(oblique)) == []
+    for stage in ({}, WEIGHT | {"static": {"boundary": {"bottom": FIXED, "left": ROLLER, "right": ROLLER}}}):
+        assert problems_in(lambda stage=stage: sloped(oblique | stage)) == []
     assert problems_in(lambda: sloped(oblique | {"layer": [{"thickness": 8.0}, {}]})) == [
         f"incident: is not known together with layers {where}; leave one out, or give {UPWARDS}"
     ]
