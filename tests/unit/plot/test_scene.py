@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
 
-from dembound.casefile.disks.monitor_rows import shown_names
+from dembound.casefile.disks.monitor_rows import shown_names, spread_names
 from dembound.errors import CaseError
 from dembound.plot.scene import CRACKS, MANY_CRACKS, plot_scene
 
@@ -120,6 +120,16 @@ def test_many_cracks_have_smaller_marks_so_that_disks_stay_visible(tmp_path):
 def test_a_long_row_of_monitors_is_named_at_its_ends():
     row = [f"surface_{number}" for number in range(1, 31)]
     assert shown_names(["crest", *row, "toe_1", "toe_2"]) == ["crest", "surface_1", "surface_30", "toe_1", "toe_2"]
+
+
+def test_of_long_rows_some_monitors_are_drawn():
+    row = [f"surface_{number}" for number in range(1, 29)]
+    some = [f"surface_{number}" for number in (1, 6, 12, 17, 23, 28)]
+    assert spread_names(["crest", *row, "toe"], 8) == ["crest", *some, "toe"]
+    assert spread_names([*row, *(f"base_{k}" for k in range(8))], 4) == ["surface_1", "surface_28", "base_0", "base_7"]
+    assert spread_names(row[:8], 8) == row[:8]
+    single = [f"gauge {number}" for number in range(20)]
+    assert spread_names(single, 8) == single
 
 
 def test_small_disks_give_way_to_their_mean(run):
