@@ -45,5 +45,5 @@ def test_its_lattice_moves_under_level_ground_as_two_waves() -> None:
         # wavelet have: 0.3·2π/20, 10 % of a wave of 20 D
         assert np.sqrt(((own[:, component] - waves) ** 2).sum() / (waves**2).sum()) < 0.12
         assert np.abs(own[:, 1 - component]).max() < 1e-12
-        before = int((80.0 + 10.5) / speed / step)  # but for what the wavelet is before its start, 1e-8, and its rise in a step
+        before = int((80.0 + 10.5) / speed / step)  # but for what is before its start, 1e-8, and its rise in a step
         assert np.abs(found["below"][:before]).max() < 1e-6

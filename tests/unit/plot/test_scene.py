@@ -132,6 +132,25 @@ def test_of_long_rows_some_monitors_are_drawn():
     assert spread_names(single, 8) == single
 
 
+def test_layers_are_named_where_the_ground_is_higher(tmp_path):
+    """In the body, left if its right side is lower, so that no name is in the air or on a free-field column."""
+    for lower, x in ((False, 20.0), (True, 3.0)):
+        path = block(tmp_path / "run.h5", 23, 10, lambda x: x)
+        with h5py.File(path, "a") as file:
+            position = file["particles/position"][:]
+            column = position[:, 0] < 3.0
+            kept = column | (position[:, 0] < 13.0) | (position[:, 1] < 5.0) if lower else column | True
+            kept &= position[:, 0] < 20.0
+            for name in ("particles/position", "particles/radius", "snapshots/0000/velocity"):
+                values = file[name][:]
+                del file[name]
+                file[name] = values[kept]
+            file.attrs["column"] = int(np.count_nonzero(column))
+            file.attrs["layer_names"], file.attrs["joints"] = ["soil", "rock"], [4.0]
+        names = {text.get_text(): text.xy for text in plot_scene(path).axes[0].texts}
+        assert (names["soil"], names["rock"]) == ((x, 10.0), (x, 4.0))
+
+
 def test_small_disks_give_way_to_their_mean(run):
     # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 4 that a disk needs
     panel = plot_scene(block(run, 600, 100, lambda x: x)).axes[0]
