@@ -51,7 +51,9 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seams else ())
     words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
-    if not full:
+    if len(whole.seams) > 1:  # of other columns on each side, which meet in the continuum below
+        words = ["the whole scene, as the ground has two heights", *words]
+    elif not full:
         plain, about = _reduced(plain)
         words = [*about, *words]
     own = LAWS[case.material.law]
