@@ -235,7 +235,7 @@ def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> Non
     for name, high, low in zip(disks.layers, ends[:-1], ends[1:], strict=True):
         room = 72.0 * scale * np.array([right - left, high - low])
         if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
-            place = {"xytext": (aside, -3.0), "textcoords": "offset points", "ha": aligned, "va": "top"}
+            place: dict[str, Any] = {"xytext": (aside, -3.0), "textcoords": "offset points", "ha": aligned, "va": "top"}
             x = left if aligned == "left" else right
             panel.annotate(name, (x, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
 

@@ -212,5 +212,5 @@ def _impedances(scene: DiskScene, side: str) -> np.ndarray:
     """
     parts = media_of(scene, side)
     order = [0, 1] if normal_axis(side) == 0 else [1, 0]  # of P and S waves
-    found = [medium.density * np.array(medium.own_speeds())[order] for _, medium in parts]
+    found = [medium.density * np.array(medium.running_speeds)[order] for _, medium in parts]
     return np.asarray(np.average(found, axis=0, weights=[part.length for part, _ in parts]))
