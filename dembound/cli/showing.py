@@ -160,7 +160,7 @@ class SignalsShown:
 
     def leave_surface(self, file: Path, output: Path, title: str | None) -> None:
         """Write picture and table of the amplification along the surface, and where its free field is."""
-        from dembound.plot.surface import plot_surface
+        from dembound.plot.surface import COMPONENTS, plot_surface
         from dembound.results.surface import amplification
         from dembound.results.text_files import write_csv
 
@@ -168,7 +168,7 @@ class SignalsShown:
         leave(plot_surface(file, found, self.component), output, title)
         write_csv(table := output.with_suffix(".csv"), found.rows())
         out.print(f"wrote {table}")
-        for line in found.notes():
+        for line in found.notes(COMPONENTS[self.component or "both"]):
             out.print(line)
 
 

@@ -16,6 +16,7 @@ from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.part import System
 from dembound.motion.stability import NOISE, Trial, at_rest, left_out
+from dembound.waves.wave import Wave
 
 PARTICLES = 2500
 """Approximate number of particles of a reduced copy; one brick may have more."""
@@ -50,8 +51,14 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seams else ())
+        if len(whole.seams) > 1:  # kept only under waves
+            plain = replace(
+                plain, boundary=case.boundary, wave={name: _still(wave) for name, wave in case.wave.items()}
+            )
     words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
-    if not full:
+    if len(whole.seams) > 1:  # of other columns on each side, which meet in the continuum below
+        words = ["the whole scene, as the ground has two heights", *words]
+    elif not full:
         plain, about = _reduced(plain)
         words = [*about, *words]
     own = LAWS[case.material.law]
@@ -68,6 +75,12 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
         found.append(_under(build(plain), f"{own.name}{', unloaded' if opens else ''}"))
         words += [f"noise of {NOISE:g} m/s, in which no bond breaks", *([UNLOADED] if opens else [])]
     return found, [size, *words]
+
+
+def _still(wave: Wave) -> Wave:
+    """A wave without motion, for which a case keeps its two free-field columns beside a continuum."""
+    sizes = {"amplitude", "scale"} & type(wave).model_fields.keys()
+    return wave.model_copy(update=dict.fromkeys(sizes, 0.0))
 
 
 def _under(scene: DiskScene, name: str) -> Trial:

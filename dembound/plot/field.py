@@ -59,7 +59,7 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
-    ground.
+    ground; foot, the height (m) below which motion of the continuum is without the free field.
     """
 
     positions: np.ndarray
@@ -72,6 +72,7 @@ class Disks:
     continuum: ContinuumCells | None = None
     holes: tuple[Hole, ...] = ()
     layers: tuple[LayersOfSide, ...] = ()
+    foot: float | None = None
 
     @cached_property
     def own_window(self) -> Window:
@@ -166,6 +167,7 @@ def read_disks(file: h5py.File) -> Disks:
         continuum=read_continuum(file),
         holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
         layers=tuple(_layers_in(file)),
+        foot=_foot(file),
     )
 
 
@@ -295,6 +297,14 @@ def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int,
     if name == "unbalanced":
         return column, f"unbalanced force {way}", "N"
     return column, f"{name} {way}", UNITS[name][column]
+
+
+def _foot(file: h5py.File) -> float | None:
+    """Height (m) below which motion of the continuum is without the free field: what the body adds; None if none is."""
+    if GROUP not in file or not is_scattered(file):
+        return None
+    lacking = ~file[f"{GROUP}/total"][:].astype(bool)
+    return float(file[f"{GROUP}/position"][:][lacking, 1].max()) if lacking.any() else None
 
 
 def _layer(file: h5py.File) -> Field:

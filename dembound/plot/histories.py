@@ -1,6 +1,6 @@
 """Motion and stress of the monitors against time, record sections and hodographs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.casefile.disks.load import FREE_FIELD
+from dembound.casefile.disks.monitor_rows import spread_names
 from dembound.errors import CaseError
 from dembound.plot.style import (
     TimeUnit,
@@ -30,6 +31,9 @@ Histories = dict[str, MonitorRecord]
 
 SENSES = {"stress": ", tension positive"}
 """The meaning of a positive value, if the axis does not show it."""
+
+MOST_PANELS = 8
+"""Number of monitors above which long rows of them are not shown in full, unless monitors are named."""
 
 MOST_PLACES = 2
 """Largest number of listed positions of a monitor in several runs; more are only counted."""
@@ -53,6 +57,7 @@ def plot_histories(
     component: Component | None = None,
     quantity: Quantity = "velocity",
     monitors: Sequence[str] | None = None,
+    most: int = MOST_PANELS,
 ) -> Figure:
     """One panel per monitor, with common axes; several runs are drawn in the same panel.
 
@@ -70,8 +75,10 @@ def plot_histories(
         velocity in m/s, displacement in m, acceleration in m/s² (rad/s, rad, rad/s² for the rotation), or of bars
         stress in MPa.
     monitors
-        names of the monitors to show, in this order; by default all. A twin that is given by its name has a separate
-        panel.
+        names of the monitors to show, in this order; by default all, but of long rows ends and some between, as is
+        noted. A twin that is given by its name has a separate panel.
+    most
+        number of monitors above which this is so.
 
     Raises CaseError when a file cannot be read or lacks a requested stress, no run has a monitor, none has
     a requested monitor, or a component of a stress is requested.
@@ -79,7 +86,7 @@ def plot_histories(
     if quantity == "stress" and component is not None:
         raise CaseError(["component: is of motions; the stress of a bar is that along it"])
     histories = [read_histories(path, quantity) for path in runs]
-    shown = chosen_monitors(runs, histories, monitors)
+    shown = chosen_monitors(runs, histories, monitors, most)
     drawn = those(histories, (*shown, *map(twin_of, shown)))
     columns, unit = shown_columns(drawn, component), _time_unit_of(drawn)
     figure = new_figure(9.0 if len(columns) == 1 else 12.0, stacked_height(len(shown)))
@@ -102,7 +109,8 @@ def plot_histories(
     beside = f"{of if len(columns) == 1 else quantity}{SENSES.get(quantity, '')} ({UNITS[quantity][columns[0]]})"
     figure.supylabel(beside, fontsize=10)
     measured_once(panels)
-    return finished(figure, f"{of.capitalize()} at the monitors", panels.flat, 3)
+    title = f"{of.capitalize()} at the monitors{left_out(shown, histories, monitors)}"
+    return finished(figure, title, panels.flat, 3)
 
 
 def _draw(
@@ -160,16 +168,38 @@ def _in_words(places: Sequence[str]) -> str:
     return f"{places[0]} and {len(places) - 1} other places"
 
 
-def chosen_monitors(runs: Sequence[Path], histories: Sequence[Histories], requested: Sequence[str] | None) -> list[str]:
-    """Names of the monitors that have a panel, each once; errors as in `plot_histories`."""
+def chosen_monitors(
+    runs: Sequence[Path],
+    histories: Sequence[Histories],
+    requested: Sequence[str] | None,
+    most: int | None = MOST_PANELS,
+) -> list[str]:
+    """Names of the monitors that have a panel, each once; errors as in `plot_histories`.
+
+    most : number above which of long rows ends and some between are chosen; None for all.
+    """
     known = list(dict.fromkeys(name for run in histories for name in run))
     if not known:
         raise CaseError([f"{', '.join(map(str, runs))}: has no monitors to show"])
     if requested is None:
-        return [name for name in known if name.removesuffix(FREE_FIELD) == name]
+        own = _without_twins(known)
+        return own if most is None else spread_names(own, most)
     if unknown := [name for name in requested if name not in known]:
         raise CaseError([f"monitor: is {name}, must be one of {', '.join(known)}" for name in unknown])
     return list(dict.fromkeys(requested))
+
+
+def _without_twins(names: Iterable[str]) -> list[str]:
+    """The monitors among names, each once."""
+    return [name for name in dict.fromkeys(names) if name.removesuffix(FREE_FIELD) == name]
+
+
+def left_out(shown: Sequence[str], histories: Sequence[Histories], requested: Sequence[str] | None) -> str:
+    """A line of a title on how many monitors are shown; empty if some were requested or none is left out."""
+    known = _without_twins(name for run in histories for name in run)
+    if requested is not None or len(shown) == len(known):
+        return ""
+    return f"\n{len(shown)} of {len(known)}: ends of rows and some between; --monitor shows others"
 
 
 def shown_columns(histories: Sequence[Histories], component: Component | None) -> list[int]:
@@ -229,7 +259,7 @@ def plot_section(
     if component == "both":
         raise CaseError(["--component: is both; a section shows one"])
     histories = [read_histories(path, quantity) for path in runs]
-    shown = chosen_monitors(runs, histories, monitors)
+    shown = chosen_monitors(runs, histories, monitors, most=None)
     common = [name for name in shown if all(name in run for run in histories)]
     if len(common) < 2:
         raise CaseError([f"--monitor: a section needs two monitors that all runs have, here are {len(common)}"])
@@ -300,4 +330,5 @@ def plot_hodograph(
         panel.set_title(monitor_title(name, histories), loc="left", fontsize=8)
         panel.set_xlabel(f"{quantity} along x ({unit})", fontsize=8)
         panel.set_ylabel(f"{quantity} along y ({unit})", fontsize=8)
-    return finished(figure, f"Paths of the {quantity} at the monitors, dots at their ends", list(np.ravel(panels)), 3)
+    title = f"Paths of the {quantity} at the monitors, dots at their ends{left_out(shown, histories, monitors)}"
+    return finished(figure, title, list(np.ravel(panels)), 3)

@@ -31,6 +31,9 @@ from dembound.plot.style import (
 from dembound.results.histories import read_histories
 from dembound.results.reader import cracks_until, open_record, reading
 
+MOST_BELOW = 4
+"""Number of monitors above which long rows of them are not shown in full below a body that moves."""
+
 
 class TimeLine:
     """Velocities at the monitors of a run, with a vertical line at a time; the rest is drawn once.
@@ -42,14 +45,14 @@ class TimeLine:
     width
         of the picture in inches.
     monitors
-        names of the monitors to show; None for all.
+        names of the monitors to show; None for all, but of long rows ends and some between.
 
     Raises CaseError as `plot_histories`.
     """
 
     @styled
     def __init__(self, run: Path, width: float, monitors: Sequence[str] | None = None) -> None:
-        self.figure = plot_histories([run], monitors=monitors)
+        self.figure = plot_histories([run], monitors=monitors, most=MOST_BELOW)
         self.width, self.height = width, float(self.figure.get_size_inches()[1])
         self.figure.set_size_inches(self.width, self.height)
         self._canvas = FigureCanvasAgg(self.figure)

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.figure import Figure
 
-from dembound.plot.histories import chosen_monitors, direction, largest_values, those, title_monitors
+from dembound.plot.histories import chosen_monitors, direction, largest_values, left_out, those, title_monitors
 from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
 from dembound.plot.style import Powers, finished, line_style, measured_once, new_figure, stacked_height, styled
 from dembound.records.processing import Motion
@@ -136,7 +136,8 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     panels[-1, 0].set(xlim=(0.0, _end_of(spectra)), ylim=(0.0, None))
     figure.supylabel("amplitude (m/s per Hz)", fontsize=10)
     measured_once(panels)
-    return finished(figure, f"Spectra of the velocity {direction(column)} at the monitors", panels.flat, 3)
+    title = f"Spectra of the velocity {direction(column)} at the monitors{left_out(shown, histories, None)}"
+    return finished(figure, title, panels.flat, 3)
 
 
 def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.ndarray]:

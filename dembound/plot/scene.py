@@ -53,6 +53,9 @@ MANY_CRACKS = 500
 SMALLEST_CRACK = 0.1
 """Least size of the mark of a crack over that of one of few."""
 
+FOOT: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 1.4}
+"""Line below which the continuum has no free field: above its elements, below its ties."""
+
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
 """Drawing order of marks."""
 
@@ -199,6 +202,9 @@ def draw_panel(
         beyond = None if shown.beyond is None else shown.beyond[index]
         continuum = disks.continuum.moved(None if shown.moved_beyond is None else shown.moved_beyond[index])
         draw_continuum(panel, continuum, disks.part_windows, beyond, shown.limits, scale)
+        if beyond is not None and disks.foot is not None:
+            left, right = disks.continuum.window.extent[:2]
+            panel.hlines(disks.foot, left, right, label="below: motion without the free field", **FOOT)
     for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
         if window.extent[0] < seam < window.extent[1]:
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
@@ -222,18 +228,19 @@ def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> Non
     dashes: Sequence[dict[str, Any]] = {"color": "white"}, {"color": "black", "linestyle": (0, (6, 3))}
     looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
     plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    for own in disks.layers:
-        left, right = np.clip((own.low, own.high), *window.extent[:2]).tolist()
+    left, right, aligned = _beside_layers(disks, *window.extent[:2])
+    for number, own in enumerate(disks.layers):
+        ends = np.clip((own.low, own.high), left, right).tolist()
         for joint, way in product(own.joints, dashes):  # dashes of two colours, visible on all others
-            panel.plot((left, right), (joint, joint), **way, **looks)
+            panel.plot(ends, (joint, joint), **way, **looks)
+        at = ("left", "right")[number] if len(disks.layers) > 1 else aligned
+        aside = 3.0 if at == "left" else -3.0
         heights = np.clip([top, *own.joints, bottom], bottom, top)
         for name, high, low in zip(own.names, heights[:-1], heights[1:], strict=True):
-            room = 72.0 * scale * np.array([right - left, high - low])
+            room = 72.0 * scale * np.array([ends[1] - ends[0], high - low])
             if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
-                place: dict[str, Any] = {
-                    "xytext": (-3.0, -3.0), "textcoords": "offset points", "ha": "right", "va": "top",
-                }  # fmt: skip
-                panel.annotate(name, (right, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+                place: dict[str, Any] = {"xytext": (aside, -3.0), "textcoords": "offset points", "ha": at, "va": "top"}
+                panel.annotate(name, (ends[at == "right"], high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
     for way in dashes if len(disks.layers) > 1 else ():
         panel.plot((disks.layers[0].high,) * 2, (_one_below(disks.layers), top), **way, **looks)
 
@@ -251,6 +258,21 @@ def _one_below(sides: Sequence[LayersOfSide]) -> float:
         if ends[0] != ends[1]:
             break
     return lowest
+
+
+def _beside_layers(disks: Disks, left: float, right: float) -> tuple[float, float, str]:
+    """Ends (m) of a window without free-field columns; and at which of them layers are named.
+
+    At the right, or at the left where the ground is higher there: above lower ground their names would be in the air.
+    """
+    middle = 0.5 * (left + right)
+    for seam in disks.seams:
+        left, right = (max(left, seam), right) if seam < middle else (left, min(right, seam))
+    x, y = disks.positions[disks.column :].T
+    near = 0.1 * float(np.ptp(x))
+    highs = [y[side].max() for side in (x < x.min() + near, x > x.max() - near)]
+    is_higher = bool(highs[0] > highs[1] + 4.0 * float(disks.radii.max()))
+    return left, right, "left" if is_higher else "right"
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:

@@ -17,6 +17,7 @@ from dembound.plot.histories import (
     Histories,
     chosen_monitors,
     direction,
+    left_out,
     name_columns,
     shown_columns,
     those,
@@ -111,7 +112,7 @@ def plot_fourier(
         return fourier_curve(run[name].values[:, column], _time_step(name, run[name]))
 
     return _figure(
-        runs, quantity, monitors, component, curve, f"Fourier spectra of the {quantity} at the monitors",
+        runs, quantity, monitors, None, component, curve, f"Fourier spectra of the {quantity} at the monitors",
         "frequency (Hz)",
         lambda along, unit: f"Fourier amplitude of the {quantity}{along} ({unit}·s)",
     )  # fmt: skip
@@ -158,7 +159,7 @@ def plot_transfer(
 
     below = "their free-field twins" if reference is None else reference
     return _figure(
-        runs, quantity, shown, component, curve, f"Transfer functions of the {quantity} to the monitors",
+        runs, quantity, monitors, shown, component, curve, f"Transfer functions of the {quantity} to the monitors",
         "frequency (Hz)",
         lambda along, _: f"amplitude over that of {below}, {quantity}{along} (–)",
     )  # fmt: skip
@@ -188,11 +189,12 @@ def plot_response(
         return found
 
     figure = _figure(
-        runs, "velocity", monitors, component, curve, "", "period (s)",
+        runs, "velocity", monitors, None, component, curve, "", "period (s)",
         lambda along, _: f"pseudo-acceleration{along}, 5 % damping (m/s²)",
     )  # fmt: skip
     begin = with_unit(max(begins), "s", digits=2)
-    figure.suptitle(f"Response spectra of the monitors, from {begin} on: eight samples in a period", fontsize=11)
+    title = f"Response spectra of the monitors, from {begin} on: eight samples in a period"
+    figure.suptitle(title + figure.get_suptitle(), fontsize=11)
     return figure
 
 
@@ -200,6 +202,7 @@ def _figure(
     runs: Sequence[Path],
     quantity: Quantity,
     monitors: Sequence[str] | None,
+    shown: Sequence[str] | None,
     component: Component | None,
     curve: CurveOf,
     title: str,
@@ -208,10 +211,11 @@ def _figure(
 ) -> Figure:
     """A panel for each monitor and component with the lines of all runs, on logarithmic axes.
 
-    label : text beside the panels, from the direction after a blank, empty where panels have one each, and the unit.
+    monitors : as asked for. shown : which have panels, if not these. label : text beside the panels, from the direction
+    after a blank, empty where panels have one each, and the unit.
     """
     histories = [read_histories(path, quantity) for path in runs]
-    shown = chosen_monitors(runs, histories, monitors)
+    shown = shown or chosen_monitors(runs, histories, monitors)
     columns = [0] if quantity == "stress" else shown_columns(those(histories, shown), component)
     figure = new_figure(7.5 if len(columns) == 1 else 12.0, 1.2 + 2.4 * len(shown))
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
@@ -228,7 +232,7 @@ def _figure(
     has_one = len(columns) == 1 and quantity != "stress"  # which is along the bar
     figure.supylabel(label(f" {direction(columns[0])}" if has_one else "", UNITS[quantity][columns[0]]), fontsize=10)
     name_columns(panels, columns)
-    return finished(figure, title, panels.flat, 3)
+    return finished(figure, f"{title}{left_out(shown, histories, monitors)}", panels.flat, 3)
 
 
 def _draw(

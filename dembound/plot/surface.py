@@ -1,5 +1,6 @@
 """Amplification along the surface of the ground: peaks, spectra and displacements at the end beside the free field."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -43,10 +44,10 @@ def plot_surface(path: Path, found: Amplification, component: Component | None =
     """Panels along x: peaks and smoothed Fourier spectra over those of the free field, displacement at the end, ground.
 
     component
-        of the map of spectra over x and frequency: x, y or both; by default the one that moves most in the free field,
-        x if that has no component alone. Lines have both.
+        x, y or both; by default lines have both, and the map of spectra over x and frequency has the one that moves
+        most in the free field, x if that has no component alone.
     """
-    maps = COMPONENTS[component or ("y" if found.over_size[0] else "x")]
+    maps, lines = COMPONENTS[component or ("y" if found.over_size[0] else "x")], COMPONENTS[component or "both"]
     kinds = [*("peaks" for _ in found.peaks), *("map" for _ in maps), "end", "ground"]
     heights = [HEIGHTS[kind] for kind in kinds]
     figure = new_figure(9.0, 1.2 + sum(heights))
@@ -60,11 +61,11 @@ def plot_surface(path: Path, found: Amplification, component: Component | None =
         cell.set_axis_off() if kind != "map" else None
     rows = iter(panels)
     for quantity, values in found.peaks.items():
-        _draw_lines(next(rows), found, values, f"peak {quantity} over\nfree field (–)", 1.0)
+        _draw_lines(next(rows), found, values, f"peak {quantity} over\nfree field (–)", 1.0, lines)
     for c, bar in zip(maps, beside[len(found.peaks) :], strict=False):
         _draw_map(figure, next(rows), bar, found, c)
     end = next(rows)
-    _draw_lines(end, found, found.at_end, "displacement at end\nless free field (m)", 0.0)
+    _draw_lines(end, found, found.at_end, "displacement at end\nless free field (m)", 0.0, lines)
     end.yaxis.set_major_formatter(Powers())
     _draw_ground(next(rows), found)
     panels[-1].set_xlabel("x (m)")
@@ -73,10 +74,13 @@ def plot_surface(path: Path, found: Amplification, component: Component | None =
     return finished(figure, f"{name}: motion along the surface over that of the free field", [panels[0]], 3)
 
 
-def _draw_lines(panel: Axes, found: Amplification, values: np.ndarray, label: str, level: float) -> None:
-    """Draw values (k, 2) of both components, and a thin line at a level."""
+def _draw_lines(
+    panel: Axes, found: Amplification, values: np.ndarray, label: str, level: float, components: Sequence[int]
+) -> None:
+    """Draw values (k, 2) of some components, and a thin line at a level."""
     panel.axhline(level, color=REFERENCE, linewidth=0.8)
-    for c, name in enumerate("xy"):
+    for c in components:
+        name = "xy"[c]
         over = f", over √(x² + y²) of the free field, which has no {name}" if found.over_size[c] else ""
         style = point_style(c) | {"markersize": 3.0 if len(found.names) <= SPARSE else 1.5}
         changes = 1 + np.flatnonzero([one != other for one, other in pairwise(found.fields)])  # where lines end

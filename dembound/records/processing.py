@@ -91,20 +91,20 @@ def usual(length: float) -> Processing:
 
 def processed(channel: Channel, settings: Processing) -> Motion:
     """The motion of a channel. Raises CaseError for windows, tapers and corners that the record does not have."""
-    channel = windowed(channel, settings.begin, settings.end)
+    whole, channel = channel, windowed(channel, settings.begin, settings.end)
     step, count = channel.time_step, len(channel.values)
     time = channel.begin + step * np.arange(count)
     weights, slopes = tapers(count, step, settings.taper)
     of = f"{channel.quantity} in {channel.unit}" if channel.unit else channel.quantity
     steps = [f"samples: {count} of {of}, from {time[0]:g} to {time[-1]:g} s"]
     unit = UNITS[channel.quantity][0]
-    offset, words = baseline(channel.values, settings.baseline, step, unit)
+    offset, words = baseline(channel.values, settings.baseline, step, unit, before_motion(whole.values))
     values = weights * (channel.values - offset)
     steps += words
     if settings.taper > 0.0:
         steps.append(f"taper: cosine of {settings.taper:g} s at both ends of the {channel.quantity}")
     if settings.baseline == "zero-velocity":
-        values, words = without_final_velocity(values, weights, step, channel)
+        values, words = without_final_velocity(values, weights, whole, time)
         steps += words
     values, pad, words = filtered(values, step, settings.filters)
     steps += words
@@ -146,8 +146,13 @@ def before_motion(values: np.ndarray) -> np.ndarray:
     return values[: int(CERTAIN * first_motion(values))]
 
 
-def baseline(values: np.ndarray, kind: Baseline, step: float, unit: str) -> tuple[np.ndarray | float, list[str]]:
-    """What is removed from samples (n,), and words: the mean before the motion, else of all; or a fitted line."""
+def baseline(
+    values: np.ndarray, kind: Baseline, step: float, unit: str, noise: np.ndarray
+) -> tuple[np.ndarray | float, list[str]]:
+    """What is removed from samples (n,), and words: the mean of noise (k,), else of all samples; or a fitted line.
+
+    noise : before the motion, of the whole record, as a window may begin with motion that is small beside its peak.
+    """
     if kind == "none":
         return 0.0, []
     if kind == "linear":
@@ -155,25 +160,28 @@ def baseline(values: np.ndarray, kind: Baseline, step: float, unit: str) -> tupl
         slope, level = np.polyfit(along, values, 1)
         line = level + slope * along
         return line, [f"baseline: line by least squares, from {line[0]:.3g} to {line[-1]:.3g} {unit}"]
-    noise = before_motion(values)
     mean = float(np.mean(noise if len(noise) else values))
-    of = f"the first {len(noise) * step:.4g} s, before the motion" if len(noise) else "all samples"
+    of = f"the first {len(noise) * step:.4g} s of the record, before the motion" if len(noise) else "all samples"
     return mean, [f"baseline: mean of {of}, {mean:.3g} {unit}"]
 
 
 def without_final_velocity(
-    values: np.ndarray, weights: np.ndarray, step: float, channel: Channel
+    values: np.ndarray, weights: np.ndarray, channel: Channel, time: np.ndarray
 ) -> tuple[np.ndarray, list[str]]:
-    """Accelerations (n,) less a constant from the first motion on, tapered, which makes their last velocity zero."""
+    """Accelerations (n,) at times (n,) s, less a tapered constant that makes their last velocity zero.
+
+    It begins with the first motion of their whole channel.
+    """
     if channel.quantity != "acceleration":
         raise CaseError(
             [f"--baseline: zero-velocity is for accelerations, {channel.component} is a {channel.quantity}"]
         )
-    before = first_motion(channel.values)
+    step = channel.time_step
+    before = max(0, first_motion(channel.values) - round((time[0] - channel.begin) / step))
     shape = np.where(np.arange(len(values)) < before, 0.0, weights)
     last = float(integrated(values, step)[-1])
     constant = last / float(integrated(shape, step)[-1])
-    words = f"baseline: {constant:.3g} m/s² from {channel.begin + before * step:.4g} s on"
+    words = f"baseline: {constant:.3g} m/s² from {time[0] + before * step:.4g} s on"
     return values - constant * shape, [f"{words}, as the velocity ends with {last:.3g} m/s"]
 
 
@@ -306,25 +314,25 @@ def usable_band(channel: Channel, settings: Processing) -> tuple[float, float]:
     """Lowest and highest usable frequency, Hz; (nan, nan) if noise is everywhere too strong.
 
     It is that of the filters that are applied, below 0.4 of the sampling rate and above one period in the record. If
-    samples before the motion show the noise, it is also the range around the strongest frequency in which the smoothed
-    Fourier amplitude is three times that of noise of equal length; noise is not judged at frequencies of which
-    these samples have less than a period.
+    samples before the motion of the whole record show the noise, it is also the range around the strongest frequency in
+    which the smoothed Fourier amplitude is three times that of noise of equal length; noise is not judged at
+    frequencies of which these samples have less than a period.
     """
-    channel = windowed(channel, settings.begin, settings.end)
+    noise, channel = before_motion(channel.values), windowed(channel, settings.begin, settings.end)
     values, step = channel.values, channel.time_step
     filters = settings.filters
     low = max(filters.high_pass or 0.0, 1.0 / (step * len(values)))
     high = min(filters.low_pass or np.inf, SHARE_OF_RATE / step)
-    before = len(before_motion(values))
+    before = len(noise)
     if not before:
         return low, high
-    values = values - values[:before].mean()
+    values, noise = values - noise.mean(), noise - noise.mean()
     centres = shown_frequencies(len(values), step)
-    power, noise = (
+    power, quiet = (
         smoothed(frequency, np.abs(spectrum) ** 2, centres)
-        for frequency, spectrum in (fourier_spectrum(part, step) for part in (values, values[:before]))
+        for frequency, spectrum in (fourier_spectrum(part, step) for part in (values, noise))
     )
-    loud = power > SIGNAL_TO_NOISE**2 * noise * len(values) / before
+    loud = power > SIGNAL_TO_NOISE**2 * quiet * len(values) / before
     loud |= centres < 1.0 / (step * before)
     strongest = int(np.argmax(power * centres**2 if channel.quantity != "acceleration" else power))
     if not loud[strongest]:

@@ -22,6 +22,7 @@ from dembound.motion.trackers import Run, Tracker
 from dembound.results.reader import understood
 from dembound.results.text_files import checked
 from dembound.version import __version__
+from dembound.words import with_unit
 
 if TYPE_CHECKING:
     from dembound.casefile.model import Case
@@ -151,9 +152,22 @@ def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
     if not path.is_file():
         raise CaseError([f"static.from: {folder} has no settled state ({name}.npz)"])
     kept = Checkpoint.read(path)
-    if different := differences(keys, checked(_Kept, kept.facts, path).keys):
+    if different := _unlike(keys, checked(_Kept, kept.facts, path).keys):
         raise CaseError([f"static.from: {folder} has settled another body", *different])
     return kept.arrays
+
+
+def _unlike(here: Mapping[str, Any], there: Mapping[str, Any]) -> list[str]:
+    """The keys of two stages that differ, a line each; one for elements of a continuum, which nobody may have given."""
+    sizes = [keys["outside"]["element"] for keys in (here, there) if "outside" in keys]
+    follows = ("outside.element:", "outside_rows:")
+    lines = differences(here, there)
+    others = [line for line in lines if not line.startswith(follows)]
+    if len(sizes) < len((here, there)) or len(others) == len(lines):
+        return lines
+    own, other = (with_unit(size, "m") for size in sizes)
+    why = f"elements, which settle too, follow from the waves unless given; they are of {own} here, {other} there"
+    return [*others, f"outside.element: {why}; give the same there and here, and settle there anew"]
 
 
 @dataclass

@@ -65,13 +65,13 @@ class Amplification:
         """What a component is relative to, such as "free field's x"."""
         return f"free field's {'size' if self.over_size[component] else 'xy'[component]}"
 
-    def notes(self) -> Iterator[str]:
-        """What is to be known of the free field, one line each."""
+    def notes(self, components: Sequence[int] = (0, 1)) -> Iterator[str]:
+        """What is to be known of the free field of some components, one line each."""
         for name in dict.fromkeys(self.fields):
             y = self.field_places[self.fields.index(name), 1]
             yield f"free field: {name} at y = {y:.4g} m, of {counted(self.fields.count(name), 'monitor')}"
-        for c, is_over in enumerate(self.over_size):
-            if is_over:
+        for c in components:
+            if self.over_size[c]:
                 yield f"the free field does not move along {'xy'[c]}: {'xy'[c]} is over its size √(x² + y²)"
         if self.deep > 0.0:
             yield f"the free field is up to {self.deep:.3g} m below the surface; add a monitor on level ground"

@@ -62,7 +62,7 @@ def test_every_particle_moves_as_its_twin(lab, name):
     pattern, wave, words, error = CASES[name]
     scene = build(ground(lab, pattern, 0.05, wave=wave, **words))
     settled = settle(scene) if words else None
-    assert settled is None or settled.column is not None
+    assert settled is None or settled.columns
     simulation = lab.simulation(scene, settled.start if settled else None)
     furthest = peak = 0.0
     while simulation.time < 0.15:

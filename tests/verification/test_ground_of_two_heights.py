@@ -183,7 +183,11 @@ def test_ground_whose_surface_is_below_the_disks_box_settles_under_a_law_that_br
     ]
     assert "-490, 0 kPa" in said  # 2.5 t/m³·9.81 m/s²·20 m, and 10 m
     assert "-245, 0 kPa" in said
-    assert settle(build(case)).ratio < 1e-4
+    settled = settle(build(case))
+    assert settled.ratio < 1e-4
+    left, right = settled.columns  # each by itself, the left one under twice the weight
+    assert max(left.ratio, right.ratio) < 1e-4
+    assert left.mean_reaction == pytest.approx(2.0 * right.mean_reaction, rel=0.1)
 
 
 def test_at_rest_each_side_has_its_own_weight_and_k0(lab) -> None:

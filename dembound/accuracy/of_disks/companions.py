@@ -20,12 +20,14 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts.pairs import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.formulas.disks.held_sides import HeldSides
 from dembound.formulas.disks.places import middle_of_loads, patch_around, weights_at
 from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.history import History, Motions
+from dembound.motion.kind import StalledError
 from dembound.packings import Packing
+from dembound.words import with_unit
 
 QUANTITIES = ("velocity", "displacement")
 """Quantities whose errors are bounded."""
@@ -245,8 +247,13 @@ class Companions:
         return self._until_break(self._measured(case, what).motions)
 
     def _measured(self, case: DiskCase, what: str) -> Run:
-        """The run of a companion; what : it has, in words."""
-        return self.runner.run(at_step(case, self.step), self.named(f"with {what}"))
+        """The run of a companion; what : it has, in words. Raises RunError if it does not come to rest."""
+        try:
+            return self.runner.run(at_step(case, self.step), self.named(f"with {what}"))
+        except StalledError as stalled:
+            size = with_unit(2.0 * case.packing.radius, "m")
+            moved = f"ground of disks of {size} with {what} does not come to rest under its loads"
+            raise RunError(f"{moved} ({stalled.run.state.step:,} steps), where the given one did") from None
 
     @cached_property
     def expected(self) -> int:

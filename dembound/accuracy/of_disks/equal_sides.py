@@ -17,7 +17,7 @@ from dembound.boundaries.viscous import Viscous
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.matching import Held, homogenised_beta, per_metre, supports_of
 from dembound.disks.scene import DiskScene, build, with_boundaries
-from dembound.disks.sides import ground_at, media_of, medium_of_side
+from dembound.disks.sides import media_of, medium_of_side
 from dembound.errors import CaseError
 from dembound.formulas.disks.reflections import Reflected, Reflections, factor_for
 
@@ -206,7 +206,11 @@ def _equal_supports(table: Boundary, side: str, own: DiskScene, finer: DiskScene
 
 
 def _impedances(scene: DiskScene, side: str) -> np.ndarray:
-    """ρc (2,) Pa·s/m of waves along the normal of a side that move disks along x and y; nan where none run."""
-    axis, ground = normal_axis(side), ground_at(scene, side)
-    p, s = ground.wave_speeds(axis)
-    return ground.density * np.array([p, s] if axis == 0 else [s, p])
+    """ρc (2,) Pa·s/m of waves along the normal of a side that move disks along x and y; nan where none run.
+
+    The mean over the layers that it meets: a coarser body may end at another height, and has other shares of them.
+    """
+    parts = media_of(scene, side)
+    order = [0, 1] if normal_axis(side) == 0 else [1, 0]  # of P and S waves
+    found = [medium.density * np.array(medium.running_speeds)[order] for _, medium in parts]
+    return np.asarray(np.average(found, axis=0, weights=[part.length for part, _ in parts]))

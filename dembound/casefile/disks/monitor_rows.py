@@ -153,8 +153,28 @@ def _surface(along: np.ndarray, holes: Sequence[Hole], packing: Packing, ground:
 
 def shown_names(names: Sequence[str]) -> list[str]:
     """The monitors that are named: of a row ``NAME_1``, ``NAME_2`` … of more than `LONGEST_ROW` its ends alone."""
+    return [name for row in _by_row(names) for name in (row if len(row) <= LONGEST_ROW else (row[0], row[-1]))]
+
+
+def spread_names(names: Sequence[str], most: int) -> list[str]:
+    """Of more than `most` monitors about as many: of rows of more than `LONGEST_ROW` ends and evenly spaced others."""
+    rows = _by_row(names)
+    long = [row for row in rows if len(row) > LONGEST_ROW]
+    if len(names) <= most or not long:
+        return list(names)
+    room = most - sum(len(row) for row in rows if len(row) <= LONGEST_ROW)
+    kept = {name for row in rows for name in row}
+    for row in long:
+        count = min(max(room // len(long), 2), len(row))
+        at = {round(k * (len(row) - 1) / (count - 1)) for k in range(count)}
+        kept -= {name for k, name in enumerate(row) if k not in at}
+    return [name for name in names if name in kept]
+
+
+def _by_row(names: Sequence[str]) -> list[list[str]]:
+    """The monitors of each row, and single ones alone."""
     rows: dict[str, list[str]] = {}
     for name in names:
         numbered = NUMBERED.fullmatch(name)
         rows.setdefault(numbered[1] if numbered else name, []).append(name)
-    return [name for row in rows.values() for name in (row if len(row) <= LONGEST_ROW else (row[0], row[-1]))]
+    return list(rows.values())

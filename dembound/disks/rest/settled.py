@@ -186,8 +186,8 @@ class Settled:
     stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity :
     deviation of blocks from a target stress; None without one.
     cracks : the bonds that broke during the stage.
-    before : results before an excavation, if there was one, with the numbering of particles before it. column : results
-    of the free-field column settled by itself, if there is one.
+    before : results before an excavation, if there was one, with the numbering of particles before it.
+    columns : results of the free-field columns, each settled by itself, the left one first.
     """
 
     start: Start
@@ -199,7 +199,7 @@ class Settled:
     cracks: Cracks
     uniformity: Uniformity | None = None
     before: Settled | None = None
-    column: Settled | None = None
+    columns: tuple[Settled, ...] = ()
 
     def saved_arrays(self) -> Arrays:
         """All arrays from which `restored` restores the settled body in another run; without the stages before."""

@@ -237,7 +237,7 @@ def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
     if not columns:
         return _settle(scene, lambda: None, stage)
     starts = [each.start for each in columns]
-    return replace(_settle(scene, lambda: _beside(scene, starts), stage), column=columns[0])
+    return replace(_settle(scene, lambda: _beside(scene, starts), stage), columns=tuple(columns))
 
 
 def _excavate(scene: DiskScene, before: Start) -> Start:

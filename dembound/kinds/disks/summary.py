@@ -1,6 +1,7 @@
 """The results of a run of disks, as numbers for scripts and in words, and warnings from them."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,9 @@ from dembound.words import numbers, percent, with_unit
 SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not printed."""
 
+
+COLUMNS_AT_REST = ("column", "right_column")
+"""Keys of the results of free-field columns in those of a static stage: of the only or left one, of the right one."""
 
 SEVERAL = "contacts slid or opened while the body settled, so that its rest is one of several"
 """Said of a static stage that left the elastic law."""
@@ -78,9 +82,11 @@ def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list
 
 
 def _stages(name: str, static: Mapping[str, Any]) -> list[str]:
-    """Results of a static stage, after those of its free-field column if there is one."""
-    column = [] if static["column"] is None else [f"{name} of the free-field column: {_stage(static['column'])}"]
-    return [*column, f"{name}: {_stage(static)}"]
+    """Results of a static stage, after those of its free-field columns if there are any."""
+    columns = [each for key in COLUMNS_AT_REST if (each := static.get(key)) is not None]
+    beside = ["free-field column"] if len(columns) == 1 else ["left free-field column", "right free-field column"]
+    own = [f"{name} of the {words}: {_stage(each)}" for words, each in zip(beside, columns, strict=False)]
+    return [*own, f"{name}: {_stage(static)}"]
 
 
 def _stage(static: Mapping[str, Any]) -> str:
@@ -170,9 +176,10 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
     """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
     Also whether it ended under the elastic law, the deviation of the stress in blocks from the requested one, and the
-    same entries for the free-field column, if there is one, and before an excavation, if there was one. asked : target
-    stress, Pa.
+    same entries for the free-field column, if there is one, for that at the right, if it is another, and before an
+    excavation, if there was one. asked : target stress, Pa.
     """
+    columns = dict(zip_longest(COLUMNS_AT_REST, settled.columns))
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,
@@ -183,7 +190,7 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
         "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
         "elastic": not settled.start.left_elastic_law,
         "cracks": len(settled.cracks),
-        "column": None if settled.column is None else describe_static(settled.column, None),
+        **{name: None if one is None else describe_static(one, None) for name, one in columns.items()},
         "before": None if settled.before is None else describe_static(settled.before, asked),
     }
 

@@ -46,6 +46,9 @@ GRAVITY = 9.81
 FACTORS, PUSHES = (1.0, 1.0 / 64.0, 64.0), (0.25, 1.0 / 128.0, 8.0)
 """First, least and largest value that is tried: of F, and of horizontal accelerations over `GRAVITY`."""
 
+WEAK = " ".join(f"--set material.{each}" for each in ("law=linearpbond", "pb_ten=1e5", "pb_coh=1e5", "pb_fa=30"))
+"""Example of what a case whose bonds do not break needs: the law, two strengths (Pa) and an angle (degrees)."""
+
 LEAST_TOLERANCE = 1e-4
 """Smallest relative width of a bracket: dozens of trials."""
 
@@ -124,7 +127,8 @@ def require_strengths(case: DiskCase) -> None:
     problems, law = [], LAWS[case.material.law]
     if not law.has_history:
         said = f'is "{law.name}", under which nothing breaks or slides'
-        problems.append(f"material.law: {said}; --strength needs {with_history()}")
+        needed = f"--strength needs {with_history()} and strengths, {WEAK}"
+        problems.append(f"material.law: {said}; {needed}")
     elif not can_break(case.materials) and not any(each.fric > 0.0 for each in case.materials):
         problems.append("material.fric: is 0, and bonds have no strength; --strength needs fric, pb_ten or pb_coh")
     if case.static is None:

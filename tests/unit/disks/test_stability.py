@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from disk_systems import LAMB
 from scene_tables import lattice, pulse
-from small_cases import PULLED, SURROUNDED, problems_in, small
+from small_cases import GROUND, PULLED, SURROUNDED, problems_in, small
 
 from dembound.bar.scene import build_bar
 from dembound.boundaries.support import SupportBuilder
@@ -195,4 +195,17 @@ def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, ob
     assert list(trial.parts) == ["column", "body", "continuum", "foot"]
     assert not trial.scene.steady_load.any()
     assert len(trial.scene.supports.drive) == 0
+    assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)
+
+
+def test_ground_of_two_heights_is_tried_as_a_whole(monkeypatch) -> None:
+    """Fewer bricks would be level, without the second column and the line on which both meet."""
+    monkeypatch.setattr("dembound.disks.trials.PARTICLES", 20)
+    surface = [[0.0, 20.0], [10.0, 20.0], [20.0, 10.0], [30.0, 10.0]]
+    changes = {"ground": {"surface": surface}, "outside": {"element": 5.0}, "boundary.bottom.wave_s": "w"}
+    case = small(GROUND, changes=changes)
+    (trial,), words = trials(case)
+
+    assert words[1] == "the whole scene, as the ground has two heights"
+    assert len(trial.scene.seams) == len(trial.scene.feet) == 2
     assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)

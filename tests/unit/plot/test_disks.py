@@ -1,5 +1,7 @@
 """Outlines of holes are those of the case, means those of cells, and a continuum is drawn in their colours."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
 from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, Window, mean_on_grid, read_continuum, read_holes
+from dembound.plot.field import read_disks
 from dembound.plot.moving import MovingScene
 from dembound.plot.scene import plot_scene
 from dembound.results.recorder import Recorder
@@ -161,3 +164,13 @@ def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run
         group["node"][:] = moved[node]
         assert (moved[node] != node).any()
         np.testing.assert_allclose(read_continuum(file).corners, before, atol=1e-12)
+
+
+def test_a_line_says_below_which_height_the_free_field_is_left_out(surrounded_run, copied) -> None:
+    with copied(surrounded_run) as file:
+        height = file["continuum/position"][:, 1]
+        file["continuum/total"] = height > -1.5
+        assert read_disks(file).foot == height[height <= -1.5].max()
+        path = Path(file.filename)
+    (line,) = [each for each in plot_scene(path).axes[0].collections if each.get_label().startswith("below: motion")]
+    assert np.ptp(line.get_segments()[0][:, 1]) == 0.0

@@ -86,6 +86,21 @@ def test_means_are_those_before_the_motion_and_lines_of_all_samples() -> None:
     np.testing.assert_allclose(line.acceleration, 0.0, atol=1e-13)  # rounding of the fit
 
 
+def test_a_window_that_begins_with_motion_has_the_mean_and_the_noise_before_it() -> None:
+    """Motion at the beginning of a window that is below 1 % of its peak is no noise."""
+    rng = np.random.default_rng(3)
+    frequency = np.fft.rfftfreq(COUNT, STEP)
+    strong = (TIME > 25.0) * np.fft.irfft(np.exp(-frequency) * np.fft.rfft(rng.standard_normal(COUNT)), COUNT)
+    early = 0.002 * np.abs(strong).max() * np.clip(TIME - 10.0, 0.0, 1.0) * (TIME < 25.0) * rng.standard_normal(COUNT)
+    channel = record(strong + early + 0.02 + 1e-5 * rng.standard_normal(COUNT))
+    found = processed(channel, Processing(begin=20.0, baseline="mean"))
+    # the mean of more than 800 samples of noise: five standard errors
+    assert (channel.values[2000:] - found.acceleration).mean() == pytest.approx(0.02, abs=5e-5 / np.sqrt(800.0))
+    # no less than that of the whole record, in which more noise is beside the motion; 26 Hz with early motion as noise
+    whole, own = (usable_band(channel, Processing(begin=begin))[1] for begin in (None, 20.0))
+    assert own >= whole > 20.0
+
+
 def test_tapers_begin_and_end_at_zero_and_acceleration_stays_the_derivative() -> None:
     values = np.cos(2.0 * np.pi * 0.5 * TIME) + 0.1
     found = processed(record(values, "velocity"), Processing(taper=2.0))

@@ -107,6 +107,9 @@ def test_picture_and_table_have_the_ratios(run):
     maps = [mesh for panel in figure.axes for mesh in panel.collections if mesh.get_array() is not None]
     drawn = maps[0].get_array().reshape(len(found.frequency), 3)
     np.testing.assert_allclose(drawn[:, 1], found.spectra[1, :, 0])
+    only = plot_surface(run, found, "x")
+    assert {line.get_gid() for panel in only.axes for line in panel.lines} & {"x", "y"} == {"x"}
+    assert (len(list(found.notes((0,)))), len(list(found.notes()))) == (2, 3)  # y, over the size, has a note
     heads, *rows = found.rows()
     table = dict(zip(heads, rows[2], strict=True))
     assert table["monitor"] == "row_10"

@@ -250,3 +250,21 @@ def test_larger_disks_that_fill_the_ground_end_at_its_free_surface():
     assert larger.side("top").is_free
     assert [larger.side(side).is_outside for side in ("left", "right", "bottom")] == [True] * 3
     assert not [*larger.side("bottom").problems("bottom", {"boundary": larger.boundary, "load": ()})]
+
+
+def test_sides_that_end_at_another_height_in_larger_disks_have_other_shares_of_layers():
+    """Ground of two heights, 12 and 7.5 m in disks of 0.5 m, of 1.5 m 12 and 7.5 or 9 m, on rock up to 4 m."""
+    beside = around({"type": "free_field"}, "left", "right") | {"bottom": {"type": "viscous_input", "wave_s": "pulse"}}
+    changes = {
+        "packing.size": [48.0, 12.0],
+        "ground": {"surface": [[0.0, 12.0], [18.0, 12.0], [24.0, 7.5], [48.0, 7.5]]},
+        "layer": [{"bottom": 4.0, "p_wave_speed": 400.0}, {"p_wave_speed": 1000.0}],
+        "material": {"density": 2500.0, "fric": 0.5},
+        "boundary": beside,
+        "monitor": [],
+    }
+    case = small(GROUND, changes=changes | EMPTY)
+    scene = build(case)
+    for diameter in (1.0, 1.2, 1.5):
+        larger = build(coarser(case, scene, STEP, diameter).case)
+        assert larger.edges["right"].length < 12.0

@@ -93,8 +93,8 @@ def test_contacts_that_slide_come_closer_to_rest_by_default(bar, ratio: float | 
     body = {"packing.size": [3.0, 4.0], "boundary": boundary, "static": static}
     settled = settle(scene(bar, **{**STANDING, **law, **body}))
 
-    assert settled.column is not None
-    for each in (settled, settled.column):
+    (column,) = settled.columns
+    for each in (settled, column):
         assert each.start.has_history
         assert each.ratio <= (ratio or 1e-7)
         assert each.mean_residual <= 2.0 * each.ratio * 4.0 * MASS * G * 8

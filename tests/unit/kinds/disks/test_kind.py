@@ -74,9 +74,9 @@ def test_the_static_stage_is_reported(bar) -> None:
     scene = build(case)
     found = json.loads(json.dumps(describe_static(settle(scene), asked_stress(scene)), allow_nan=False))
 
-    named = "steps ratio mean_reaction mean_residual stress asked uniformity elastic cracks before column"
+    named = "steps ratio mean_reaction mean_residual stress asked uniformity elastic cracks before column right_column"
     assert set(found) == set(named.split())
-    assert found["before"] is found["column"] is found["asked"] is found["uniformity"] is None
+    assert found["before"] is found["column"] is found["right_column"] is found["asked"] is found["uniformity"] is None
     assert found["elastic"]
     assert found["ratio"] <= 1e-6
     assert found["mean_residual"] < 1e-4 * found["mean_reaction"]

@@ -61,6 +61,7 @@ def test_what_cannot_fail_or_has_no_weight_is_refused() -> None:
         case = small(CUT, changes=changes)
         (line,) = problems_in(lambda case=case: require_strengths(case))
         assert line.startswith(said)
+        assert ("--set material.law=linearpbond --set material.pb_ten=" in line) == line.startswith("material.law")
     with pytest.raises(CaseError, match="--tolerance: is 0, must be from"):
         measure(small(CUT), 0.0)
 
