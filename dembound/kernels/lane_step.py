@@ -77,6 +77,8 @@ def next_place(rows, block, group, column, r):
     if r == rows.group_row[group + 1]:
         if block == rows.group_block[group + 1]:
             group += 1
+            while block == rows.group_block[group + 1]:  # groups without rows
+                group += 1
             column = -1
         column += 1
         r = rows.group_row[group]
