@@ -102,10 +102,12 @@ def static_problems(
     motion: Motion | None,
     *,
     has_column: bool,
+    has_walls: bool = False,
 ) -> Iterator[str]:
     """Check the static stage; a table or an entry that is invalid on its own is None.
 
-    has_column : whether a free-field column represents the ground beyond a continuum.
+    has_column : whether a free-field column represents the ground beyond a continuum. has_walls : whether there are
+    walls, on which the body may rest.
     """
     for side in static.boundary:
         if (table := boundaries.get(side)) and table.is_periodic:
@@ -126,7 +128,9 @@ def static_problems(
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
     if motion and None not in static.boundary.values():
-        yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
+        held_by_walls = has_walls and not has_column and not any(t.needs_column for t in boundaries.values() if t)
+        if not held_by_walls:
+            yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
 
 
 def _without_weight(loads: Sequence[Load | None]) -> Iterator[str]:
