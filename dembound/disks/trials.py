@@ -45,12 +45,12 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     """
     words = [] if LAWS[case.material.law].starts_elastic else [STIFFENS.format(case.material.law)]
     case = small_motion(case)
-    plain = replace(at_rest(case), static=None, monitor=(), incident=None)
+    plain = replace(at_rest(case), static=None, wall=(), monitor=(), incident=None)
     whole = build(case)
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seams else ())
-    words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    words += left_out(case) + ["no walls"] * bool(case.wall) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
         words = [*about, *words]

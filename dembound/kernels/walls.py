@@ -8,9 +8,9 @@ faces. The shear spring stays with the contact whose normal is nearest to the on
 to the next segment.
 
 With the normal n from the wall to the centre and t = (n_y, −n_x): overlap δ = R − d, force N = k_n δ along n and −S
-along t, with S = k_s s of the path s that the surface slides, at most μN; moment −dS. What friction and dashpots take,
-and what closing and opening do, is counted as for pairs of disks (kernels/contacts.py), and the work of walls that move
-as that of sides.
+along t, with S = k_s s of the path s that the surface slides, at most μN; moment −RS, of the whole radius, so that its
+work does not depend on changes of the overlap. What friction and dashpots take, and what closing and opening do, is
+counted as for pairs of disks (kernels/contacts.py), and the work of walls that move as that of sides.
 """
 
 import math
@@ -150,7 +150,7 @@ def _opens(k, o, v, at, step, walls, lost):
     vx = v[U(0), i] * step - (walls.path[at, w, 0] - walls.path[max(at - 1, 0), w, 0])
     vy = v[U(1), i] * step - (walls.path[at, w, 1] - walls.path[max(at - 1, 0), w, 1])
     opened = own[NX] * vx + own[NY] * vy
-    slid = own[NY] * vx - own[NX] * vy + (walls.radius[k] - own[OVERLAP]) * v[U(2), i] * step
+    slid = own[NY] * vx - own[NX] * vy + walls.radius[k] * v[U(2), i] * step
     lost[CLOSES] += 0.5 * kn * own[OVERLAP] ** 2 - 0.5 * own[PUSH] * opened
     lost[DASHPOT] -= 0.5 * own[DRAG] * opened
     _rub(ks * own[PATH], 0.0, slid, ks, lost)
@@ -178,8 +178,7 @@ def _push_disk(k, u, v, at, step, walls, found, heir, new, lost, total):
         vx = v[U(0), i] * step - (walls.path[at, w, 0] - walls.path[max(at - 1, 0), w, 0])
         vy = v[U(1), i] * step - (walls.path[at, w, 1] - walls.path[max(at - 1, 0), w, 1])
         opened = nx * vx + ny * vy
-        arm = walls.radius[k] - overlap
-        slid = ny * vx - nx * vy + arm * v[U(2), i] * step
+        slid = ny * vx - nx * vy + walls.radius[k] * v[U(2), i] * step
         N = kn * overlap
         before = overlap + opened
         was, path, drag, stored, first = 0.0, 0.0, 0.0, 0.0, True
@@ -204,7 +203,7 @@ def _push_disk(k, u, v, at, step, walls, found, heir, new, lost, total):
         fx, fy = (N + push) * nx - S * ny, (N + push) * ny + S * nx
         force[0, k] += fx
         force[1, k] += fy
-        force[2, k] -= arm * S
+        force[2, k] -= walls.radius[k] * S
         total[w, 0] += fx
         total[w, 1] += fy
         new[a, NX], new[a, NY], new[a, OVERLAP], new[a, PUSH] = nx, ny, overlap, N

@@ -117,7 +117,9 @@ class Wall(Table):
 
 def wall_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """What walls do not go with; a table that is invalid on its own is None."""
-    material, layers = tables["material"], tables["layer"]
+    material, layers, output = tables["material"], tables["layer"], tables["output"]
+    if tables["wall"] and output and output.estimate:
+        yield "output.estimate: is true, but errors beside walls are not known; leave [[wall]] or the estimate out"
     for place, wall in numbered("wall", tables["wall"]):
         if material and not LAWS[material.law].has_history:
             yield (

@@ -38,6 +38,7 @@ from dembound.kinds.disks.summary import (
     summarise_disks,
     warnings_after_disks,
 )
+from dembound.kinds.disks.walls import require_clear
 from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
 from dembound.motion.memory import Storage
@@ -66,13 +67,15 @@ class Disks(Kind[DiskCase, DiskScene]):
     def build(self, case: DiskCase) -> DiskScene:
         """The scene of a case that is to run.
 
-        Raises the errors for loads without particles, a singular material, and too large zones without broken bonds;
+        Raises the errors for loads without particles, a singular material, walls that cut disks, and too large zones
+        without broken bonds;
         strips and columns that are built from parts of a case may be smaller.
         """
         scene = with_incident_waves(build(case))
         for each in filter(None, (scene.before, scene)):
             if each.has_history:  # under other laws zones matter to load factors only
                 require_room(case, each.intact_zones, each.disk_count - each.column_count)
+        require_clear(scene)
         _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
 
