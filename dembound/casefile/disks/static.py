@@ -128,9 +128,7 @@ def static_problems(
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
     if motion and None not in static.boundary.values():
-        held_by_walls = has_walls and not has_column and not any(t.needs_column for t in boundaries.values() if t)
-        if not held_by_walls:
-            yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
+        yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column, has_walls=has_walls)
 
 
 def _without_weight(loads: Sequence[Load | None]) -> Iterator[str]:
@@ -155,14 +153,20 @@ def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: M
 
 
 def _unheld_loads(
-    static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion, *, has_column: bool
+    static: Static,
+    boundaries: Sides,
+    loads: Sequence[Load | None],
+    motion: Motion,
+    *,
+    has_column: bool,
+    has_walls: bool,
 ) -> Iterator[str]:
-    """Steady loads against which the body, or the free-field column, is not held."""
+    """Steady loads against which the body, or the free-field column, is not held; a body may rest on walls."""
     beside = any(table.needs_column or (table.is_outside and has_column) for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
-        if load.wave is not None:
-            continue
         on_column = beside and load.is_everywhere
+        if load.wave is not None or (has_walls and not on_column):
+            continue
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
             kinds = '"fixed"' if on_column and axis == 0 else '"fixed" or "roller"'
