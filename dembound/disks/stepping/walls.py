@@ -249,6 +249,12 @@ class WallPart(Part):
         u = self._scene.layout.spread(displacement)
         kernel.push(self._walls, u, u, np.zeros_like(u), 0, 0.0, np.zeros((2, 7)))
 
+    @property
+    def sizes(self) -> np.ndarray:
+        """Sizes (m,) N of the last forces of walls on the disks near them."""
+        found: np.ndarray = np.hypot(*self._walls.force[:2])
+        return found
+
     def add_forces(self, force: np.ndarray) -> None:
         """Add the last forces of walls on disks to those of all nodes, force (3, n)."""
         force[:, self._scene.layout.node[self._walls.slot]] += self._walls.force
