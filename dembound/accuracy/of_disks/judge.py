@@ -73,6 +73,13 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
     return least
 
 
+def _require_linear(case: DiskCase) -> None:
+    """Raise CaseError where the motion is not that of a linear medium at the start, by its law or as disks touch walls."""
+    require_linear(case.material.law)
+    if case.wall:
+        raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)
+
+
 def _require_known(case: DiskCase) -> None:
     """Raise CaseError where errors, or the body itself, depend on unknown properties of other disks and sides."""
     problems = []
@@ -119,7 +126,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         longest: float | None = None,
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
-        require_linear(case.material.law)
+        _require_linear(case)
         return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
     def truth(self, case: DiskCase) -> Truth:
@@ -163,7 +170,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building
         and running the companions.
         """
-        require_linear(case.material.law)
+        _require_linear(case)
         _require_known(case)
         kept = [*kept, "packing.radius"] if of == "disks" else kept
         watch.begins("the packing, and the time step")
@@ -244,7 +251,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
-        require_linear(scene.case.material.law)
+        _require_linear(scene.case)
         return quick_causes(scene)
 
 
