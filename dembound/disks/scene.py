@@ -280,7 +280,14 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(
-        case, boundary=sides | upright, static=static, load=everywhere, hole=(), wall=(), monitor=(), ground=case.ground.level()
+        case,
+        boundary=sides | upright,
+        static=static,
+        load=everywhere,
+        hole=(),
+        wall=(),
+        monitor=(),
+        ground=case.ground.level(),
     )
     standing = Standing((), scene.seams[number].top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])

@@ -220,11 +220,9 @@ def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
             kn = wall.kn or 2.0 * ground.moduli.emod
             ks = (wall.ks or kn / ground.moduli.kratio) if wall.fric > 0.0 else 0.0
             stiffer = max(stiffer, 2.0 * max(kn - 2.0 * normal, 3.0 * (ks - 2.0 * shear)) / mass)
-            own, pair = (
-                viscosity(ratio, spring, 2.0 * mass, 2.0 * mass)
-                for ratio, spring in ((wall.dp_nratio, kn), (scene.case.material.dp_nratio, 0.5 * normal))
-            )
-            slower = max(slower, 2.0 * float(own - 2.0 * pair) / mass)
+            ratios, springs = np.array([wall.dp_nratio, scene.case.material.dp_nratio]), np.array([kn, 0.5 * normal])
+            own, pair = viscosity(ratios, springs, 2.0 * mass, 2.0 * mass).tolist()  # m_c of a wall is the whole mass
+            slower = max(slower, 2.0 * (own - 2.0 * pair) / mass)
     return stiffer, slower
 
 

@@ -50,7 +50,11 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seams else ())
-    words += left_out(case) + ["no walls"] * bool(case.wall) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    words += (
+        left_out(case)
+        + ["no walls"] * bool(case.wall)
+        + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    )
     if not full:
         plain, about = _reduced(plain)
         words = [*about, *words]

@@ -129,7 +129,7 @@ def _match(found, count, kept, heir):
 @njit(**FAST)
 def _springs(k, w, walls):
     """Normal and shear stiffness (N/m) of contacts of disk k of the list with wall w."""
-    kn = walls.given[w, 0] if walls.given[w, 0] > 0.0 else walls.spring[0, k]
+    kn = walls.given[w, 0] if walls.given[w, 0] > 0.0 else walls.spring[k]
     ks = walls.given[w, 1] if walls.given[w, 1] > 0.0 else kn / walls.kratio[k]
     return kn, ks
 

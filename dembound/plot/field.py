@@ -86,7 +86,9 @@ class Disks:
         own = self.own_window
         for line in self.walls:
             margin = SEEN * float(max(self.own_window.size))
-            near = np.clip(line, self.own_window.corner - margin, self.own_window.corner + self.own_window.size + margin)
+            near = np.clip(
+                line, self.own_window.corner - margin, self.own_window.corner + self.own_window.size + margin
+            )
             own = own.with_other(Window(near.min(axis=0), np.ptp(near, axis=0)))
         return own if self.continuum is None else own.with_other(self.continuum.window)
 

@@ -27,8 +27,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             with ranges the name of its range
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
-    walls/<wall>/           points (p, 2) at the start; time (k,), displacement (k, 2), force (k, 2) of the disks on it, at
-                            the times of histories
+    walls/<wall>/           points (p, 2) at the start; time (k,), displacement (k, 2), force (k, 2) of the disks on
+                            it, at the times of histories
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the mean of those half a step before and after, if the
                             run got so far (attribute velocity_of_half_step otherwise); coordination (n,) of a
                             history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)

@@ -23,9 +23,9 @@ from dembound.results.datasets import datasets_of, describe, extend, text, write
 from dembound.results.new_record import (
     DISPLACEMENT_UNIT,
     SIDE_HISTORY,
-    WALL_HISTORY,
     UNBALANCED,
     VELOCITY_UNIT,
+    WALL_HISTORY,
     begin_record,
     header_of,
     write_stages,
@@ -281,8 +281,8 @@ class Recorder:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
             self._times, self._samples = [], []
             for index, history in enumerate(self._wall_histories):
-                walls = np.concatenate(self._wall_samples)
-                for name, values in (("time", times), ("displacement", walls[:, index, :2]), ("force", walls[:, index, 2:])):
+                walls = np.concatenate([each[:, index] for each in self._wall_samples])
+                for (name, *_), values in zip(WALL_HISTORY, (times, walls[:, :2], walls[:, 2:]), strict=True):
                     extend(history[name], values)
             self._wall_samples = []
             for index, history in enumerate(self._histories):

@@ -98,7 +98,18 @@ class Arrays(Mapping[str, np.ndarray]):
             raise missing("array", name, self._names, f"{self._record.path}, {self._group}")
 
 
-_PARTS = ("histories", "snapshots", "particles", "boundaries", "walls", "cracks", "energy", "side_energies", "laws", "summary")
+_PARTS = (
+    "histories",
+    "snapshots",
+    "particles",
+    "boundaries",
+    "walls",
+    "cracks",
+    "energy",
+    "side_energies",
+    "laws",
+    "summary",
+)
 """Attributes of `Results` with recorded data."""
 
 

@@ -133,7 +133,13 @@ CASES = {
         "boundary": {},
         "wall": [
             {"name": "floor", "points": [[-9.0, 0.0], [9.0, 0.0], [20.0, -1.0]], "fric": 0.5, "dp_nratio": 0.2},
-            {"name": "ram", "points": [[-0.05, 0.3], [-0.05, 9.0]], "wave_x": "pulse", "wave_y": "pulse", "until": 0.03},
+            {
+                "name": "ram",
+                "points": [[-0.05, 0.3], [-0.05, 9.0]],
+                "wave_x": "pulse",
+                "wave_y": "pulse",
+                "until": 0.03,
+            },
         ],
         "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
         "static": {"ratio": 1e-2},

@@ -74,7 +74,7 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
 
 
 def _require_linear(case: DiskCase) -> None:
-    """Raise CaseError where the motion is not that of a linear medium at the start, by its law or as disks touch walls."""
+    """Raise CaseError where motion is not that of a linear medium at the start, by its law or as disks touch walls."""
     require_linear(case.material.law)
     if case.wall:
         raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)

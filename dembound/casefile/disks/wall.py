@@ -1,6 +1,7 @@
 """The ``[[wall]]`` tables: rigid lines that disks touch."""
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from pydantic import PrivateAttr, ValidationInfo, model_validator
@@ -85,7 +86,7 @@ class Wall(Table):
         """Mistakes in the points and the motion."""
         if not 2 <= len(self._line) <= MOST_POINTS:
             yield f"points: has {len(self._line):,} points, must have 2 to {MOST_POINTS:,}"
-        for number, (one, two) in enumerate(zip(self._line[:-1], self._line[1:], strict=True), start=1):
+        for number, (one, two) in enumerate(pairwise(self._line), start=1):
             if one == two:
                 yield f"points: has point {number} twice in a row, at ({one[0]:.6g}, {one[1]:.6g}) m; leave one out"
         for key in ("wave_x", "wave_y"):

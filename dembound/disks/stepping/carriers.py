@@ -21,8 +21,8 @@ class RestForces:
 
     Parameters
     ----------
-    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed. walls : its walls, which
-    count among the contacts; None: there are none.
+    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed. walls : its walls, as
+    further contacts; None: there are none.
     """
 
     def __init__(self, scene: DiskBody, disks: DiskParts, walls: WallPart | None = None) -> None:

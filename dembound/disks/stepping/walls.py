@@ -148,7 +148,7 @@ class WallPart(Part):
             "place": np.ascontiguousarray(place.T),
             "radius": scene.assembly.radii[disks],
             "mass": scene.mass[disks],
-            "spring": np.stack([kn, kn / kratio]),
+            "spring": kn,
             "kratio": kratio,
         }
 

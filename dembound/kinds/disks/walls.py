@@ -1,6 +1,7 @@
 """Facts and warnings about walls, and the disks that they overlap before anything moves."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def overlaps(scene: DiskScene, wall: Wall) -> np.ndarray:
     positions, radii = scene.assembly.positions[disks], scene.assembly.radii[disks]
     least, reach = np.full(len(radii), np.inf), float(radii.max())
     line = np.array(wall.line)
-    for one, two in zip(line[:-1], line[1:], strict=True):
+    for one, two in pairwise(line):
         low, high = np.minimum(one, two) - reach, np.maximum(one, two) + reach
         near = np.flatnonzero(((positions >= low) & (positions <= high)).all(axis=1))
         arm, way = positions[near] - one, two - one
@@ -43,7 +44,7 @@ def require_clear(scene: DiskScene) -> None:
             x, y = built.assembly.positions[built.column_count + int(found.argmax())]
             problems.append(
                 f"{place}.points: cuts {counted(int(cut.sum()), 'disk')} at the start, that at ({x:.4g}, {y:.4g}) m by "
-                f"{found.max():.2f} of its radius; must be less than {CUTS:g}: move it, or leave the disks out by a hole"
+                f"{found.max():.2f} of its radius; must be less than {CUTS:g}: move it, or leave disks out by a hole"
             )
     if problems:
         raise CaseError(problems)
@@ -55,9 +56,10 @@ def wall_warnings(scene: DiskScene) -> Iterator[str]:
     for place, wall in numbered("wall", built.case.wall):
         found = overlaps(built, wall)
         if (deep := found > TOUCHES).any():
+            most = percent(float(found.max()))
             yield (
-                f"{place}.points: overlaps {counted(int(deep.sum()), 'disk')} at the start, by up to "
-                f"{percent(float(found.max()))} of a radius, and pushes them off; move it, or let a [static] stage settle"
+                f"{place}.points: overlaps {counted(int(deep.sum()), 'disk')} at the start by up to {most} of a radius, "
+                "and pushes them off; move it, or let them settle in [static]"
             )
 
 
