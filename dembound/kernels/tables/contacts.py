@@ -151,9 +151,9 @@ class Walls(NamedTuple):
     m, displacement of each wall before each step, of which the last two rows are equal. fastest : (chunks,) m/s of
     disks after a step.
     kept : (m, MOST, KEPT) contacts of the last step. force (3, m), load (3, m), lost (chunks, 3), total (chunks, W, 2)
-    : work space. record : (R, W, 4) displacement (m) of each wall and force (N) on it in the last R steps. moved : (2,) J
-    that walls have supplied as they move, as `Log.work`. way : (2,) m that disks and walls may have come since the list
-    was made, and the limit; step (1,), that of the forces.
+    : work space. record : (R, W, 4) displacement (m) of each wall and force (N) on it in the last R steps. moved :
+    (2,) J that walls have supplied as they move, as `Log.work`. way : (2,) m that disks and walls may have come since
+    the list was made, and the limit; step (1,), that of the forces.
     """
 
     slot: np.ndarray

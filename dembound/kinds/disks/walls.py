@@ -58,7 +58,7 @@ def wall_warnings(scene: DiskScene) -> Iterator[str]:
         if (deep := found > TOUCHES).any():
             most = percent(float(found.max()))
             yield (
-                f"{place}.points: overlaps {counted(int(deep.sum()), 'disk')} at the start by up to {most} of a radius, "
+                f"{place}.points: overlaps {counted(int(deep.sum()), 'disk')} at the start, up to {most} of a radius, "
                 "and pushes them off; move it, or let them settle in [static]"
             )
 
