@@ -1,4 +1,4 @@
-"""Walls as a part: where they are in each step, the segments near a place, and contacts that one stage hands to another."""
+"""Walls as a part: where they are in each step, the segments near a place, and contacts handed to another stage."""
 
 import numpy as np
 import pytest
