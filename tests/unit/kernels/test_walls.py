@@ -61,7 +61,7 @@ def corner(half: float) -> list[list[float]]:
         ([[[-1.0, -1.0], [0.0, -D], [0.3, -1.0]]], [0.0]),  # the tip of a wedge
         ([tangent(-90.0, 1.0, 1.0), tangent(90.0, 1.0, 1.0)], [90.0, 90.0]),  # a slot
         ([[*tangent(0.0, 1.0, 0.06), [0.06, 1.0]]], [0.0, 90.0]),  # the upright face is in it, its foot does not count
-        ([[*tangent(0.0, 1.0, 0.1), [0.3, -1.0]]], [0.0]),  # the end of the face, 22° off, does not count
+        ([[[-1.0, -0.2], [0.14, -0.2], [0.3, -1.0]]], [0.0]),  # the end of the face, 35° off, does not count
     ],
 )
 def test_contacts_that_count(lines, expected) -> None:
