@@ -83,14 +83,19 @@ def _find(x, y, radius, first, last, at, walls, found):
     while count < MOST:
         best = found[count]
         best[2] = 0.0
+        touching = 0
         for c in range(first, last):
             s = walls.segment[c]
             shift = path[at, wall[s]]
             px, py, inside = nearest(x, y, ends, s, shift[0], shift[1])
-            d = math.hypot(x - px, y - py)
+            square = (x - px) * (x - px) + (y - py) * (y - py)
+            if square >= radius * radius or square == 0.0:
+                continue
+            touching += 1
+            d = math.sqrt(square)
             overlap = radius - d
             face = 1.0 if inside else 0.0
-            if overlap <= 0.0 or d == 0.0 or (best[2] > 0.0 and (face, overlap) <= (best[6], best[2])):
+            if overlap <= 0.0 or (best[2] > 0.0 and (face, overlap) <= (best[6], best[2])):
                 continue
             own[0], own[1], own[2], own[3], own[4], own[5], own[6] = (
                 (x - px) / d, (y - py) / d, overlap, px, py, s, face,
@@ -98,9 +103,10 @@ def _find(x, y, radius, first, last, at, walls, found):
             if _is_free(own, found, count, ends, shift):
                 for q in range(FOUND):
                     best[q] = own[q]
-        if best[2] == 0.0:
+        if best[2] > 0.0:
+            count += 1
+        if best[2] == 0.0 or touching == count:
             break
-        count += 1
     return count
 
 
