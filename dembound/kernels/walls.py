@@ -33,13 +33,10 @@ NEAR = math.cos(math.radians(30.0))
 NX, NY, OVERLAP, PUSH, PATH, DRAG, WALL = range(7)
 """What a contact keeps: its normal, overlap (m), spring force (N), shear (m), dashpot force (N), and its wall."""
 
-KEPT = 7
-
-FOUND = 7
-"""Numbers of a contact found: normal, overlap, place, segment, and whether it is a face."""
+KEPT, FOUND, LOST = 7, 7, 3
+"""Numbers of a contact kept; of one found: normal, overlap, place, segment, and whether it is a face; of energies."""
 
 FRICTION, CLOSES, DASHPOT = range(3)
-LOST = 3
 """Energies (J) that a chunk counts in a step."""
 
 
@@ -171,8 +168,7 @@ def _push_disk(k, u, v, at, step, walls, found, heir, new, lost, total):
     i = U(walls.slot[k])
     x, y = walls.place[0, k] + u[U(0), i], walls.place[1, k] + u[U(1), i]
     count = _find(x, y, walls.radius[k], walls.start[k], walls.start[k + 1], at, walls, found)
-    touched = kept[0, PUSH] > 0.0
-    if count == 0 and not touched:
+    if count == 0 and kept[0, PUSH] == 0.0:
         return
     _match(found, count, kept, heir)
     for o in range(MOST):

@@ -274,7 +274,9 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.intact:
         keys["intact"] = case.intact
     if case.layer:
-        keys["layer"] = case.layer
+        keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]
+    if case.is_unlike:
+        keys["sides_of_layers"] = [case.ground.meet, *(layer.side for layer in case.layer)]
     if case.wall:
         keys["wall"] = [{**every_key(wall), "points": wall.line} for wall in case.wall]
     if scene.ground.is_damped:

@@ -141,7 +141,7 @@ class WallPart(Part):
         disks = np.arange(own.start, own.stop)[order]
         place = scene.assembly.positions[disks]
         moduli = [each.moduli for each in scene.ground.materials]
-        layer = scene.ground.layer_of(place[:, 1])
+        layer = scene.ground.layer_of(place)
         kn, kratio = (np.array(each)[layer] for each in ([2.0 * m.emod for m in moduli], [m.kratio for m in moduli]))
         return {
             "slot": slot[order],
