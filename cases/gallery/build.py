@@ -47,7 +47,7 @@ TOPICS = {
     "Waves at an angle, and surfaces": ("oblique_sv", "canyon", "slope", "rayleigh"),
     "Slopes and dams under waves from below": ("step_sv", "landslide_quake", "empty_dam"),
     "Sources and exact solutions": ("point_source", "lamb", "blast", "blast_cracks"),
-    "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding"),
+    "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding", "collapse"),
     "Bars: waves": ("dispersion", "interface", "matched_layer", "measured_pulse", "hopkinson"),
     "Bars: cracks": ("spalling", "fracture_energy"),
 }

@@ -254,8 +254,11 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("stage", 'write stage = "after"'),
         ("", '[[hole]] has a shape and stage = "after"'),
     ),
-    ("wall", "walls", "facet"): (
-        ("material", f"[boundary.bottom] and other sides have a type; supports are in [static.boundary.bottom]{_MORE}"),
+    ("walls", "facet", "facets", "floor", "plate"): (
+        (
+            "material",
+            f"[[wall]] has points and a velocity; [boundary.bottom] and other sides have a type{_MORE}",
+        ),
     ),
     ("fix", "fixed", "fixity"): (("beta_p", 'write type = "fixed" or "roller"'),),
     ("quiet", "absorbing", "absorb", "pml", "free_field", "boundaries", "stacey", "apply"): (

@@ -64,7 +64,7 @@ SAMPLES = 1001
 
 def waves_used(case: Case) -> set[str]:
     """Names of the waves that enter from outside or are the time factor of loads."""
-    return case.entering | {load.wave for load in case.load if load.wave is not None}
+    return case.entering | case.moving | {load.wave for load in case.load if load.wave is not None}
 
 
 def is_quasi_static(case: Case, name: str, travel: float) -> bool:

@@ -120,6 +120,11 @@ class Case:
         """Names of the waves that enter from outside, through driven sides or at an angle."""
         return {name for waves in self.driving.values() for name in waves.values()}
 
+    @property
+    def moving(self) -> set[str]:
+        """Names of the waves by which walls move; by default there are none."""
+        return set()
+
 
 FREE = Free()
 
@@ -190,7 +195,7 @@ def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, s
 
 def monitor_problems(tables: Tables) -> Iterator[str]:
     """Holes, loads or monitors whose results would overwrite one another, and too many monitors."""
-    for key in ("hole", "load", "monitor"):
+    for key in ("hole", "wall", "load", "monitor"):
         first: dict[str, int] = {}
         for number, table in enumerate(tables.get(key, ()), start=1):
             if table and first.setdefault(table.name, number) != number:

@@ -210,6 +210,11 @@ class DiskBody(Scene):
         """Width and height (2,) m of the body."""
         return self.assembly.size
 
+    @property
+    def walls(self) -> Mapping[str, np.ndarray]:
+        """Points (p, 2) m of the walls that disks touch, by name."""
+        return {wall.name: np.array(wall.line) for wall in self.case.wall}
+
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once
         """The slots in which kernels hold particles and nodes of continua."""

@@ -297,9 +297,8 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    alone = replace(
-        case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=(), ground=case.ground.level()
-    )
+    plain = replace(case, hole=(), wall=(), monitor=(), ground=case.ground.level())
+    alone = replace(plain, boundary=sides | upright, static=static, load=everywhere)
     standing = Standing((), seam.top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))

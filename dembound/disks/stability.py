@@ -56,6 +56,8 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     Dashpots C of contacts are half a step behind: in place of K stands K + 2C/Δt, whose largest eigenvalue is at most
     the sum of those of both. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
 
+    A wall counts as a neighbour, see `_beyond_neighbours`.
+
     Raises RunError when the iteration for the eigenvalue does not converge.
     """
     bounds = [(_largest_eigenvalue(scene), 0.0)]
@@ -65,7 +67,9 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
         if dashed:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
         bounds += [(_loose_eigenvalue(zone), _loose_viscosity(scene, zone) if dashed else 0.0) for zone in zones]
-        bounds = [(largest / (OPENING if opens else 1.0), slows) for largest, slows in bounds]
+        stiffer, slower = _beyond_neighbours(scene)
+        bounds = [(largest + stiffer, slows + slower * viscous) for largest, slows in bounds]
+        bounds = [(largest / (OPENING if opens or scene.case.wall else 1.0), slows) for largest, slows in bounds]
     damp = 1.0 + (scene.case.material.damp if damp is None else damp)
     limit = min(_step_of(largest * damp, slows * damp) for largest, slows in bounds)
     return _with_lag(scene, limit) if viscous else limit
@@ -201,6 +205,25 @@ def _loose_eigenvalue(ground: PackedMaterial) -> float:
     """
     normal, shear = _loose_springs(ground)
     return (6.0 * normal + 24.0 * shear) / float(ground.mass.min())
+
+
+def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
+    """By how much walls raise bounds of M⁻¹K (1/s²) and M⁻¹C (1/s): where they are stiffer than a disk in their place.
+
+    A contact of stiffness k_w with a wall takes as much from a disk, k_w/m and 3k_sw/m, as one of k_w/2 with an equal
+    disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls.
+    """
+    stiffer, slower = 0.0, 0.0
+    for ground in _zones_of(scene.ground):
+        (normal, shear), mass = _loose_springs(ground), float(ground.mass.min())
+        for wall in scene.case.wall:
+            kn = wall.kn or 2.0 * ground.moduli.emod
+            ks = (wall.ks or kn / ground.moduli.kratio) if wall.fric > 0.0 else 0.0
+            stiffer = max(stiffer, 2.0 * max(kn - 2.0 * normal, 3.0 * (ks - 2.0 * shear)) / mass)
+            ratios, springs = np.array([wall.dp_nratio, scene.case.material.dp_nratio]), np.array([kn, 0.5 * normal])
+            own, pair = viscosity(ratios, springs, 2.0 * mass, 2.0 * mass).tolist()  # m_c of a wall is the whole mass
+            slower = max(slower, 2.0 * (own - 2.0 * pair) / mass)
+    return stiffer, slower
 
 
 def _loose_springs(ground: PackedMaterial) -> tuple[float, float]:

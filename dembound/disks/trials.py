@@ -46,7 +46,7 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
     """
     words = [] if LAWS[case.material.law].starts_elastic else [STIFFENS.format(case.material.law)]
     case = small_motion(case)
-    plain = replace(at_rest(case), static=None, monitor=(), incident=None)
+    plain = replace(at_rest(case), static=None, wall=(), monitor=(), incident=None)
     whole = build(case)
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
@@ -55,7 +55,11 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
             plain = replace(
                 plain, boundary=case.boundary, wave={name: _still(wave) for name, wave in case.wave.items()}
             )
-    words += left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    words += (
+        left_out(case)
+        + ["no walls"] * bool(case.wall)
+        + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    )
     if len(whole.seams) > 1:  # of other columns on each side, which meet in the continuum below
         words = ["the whole scene, as the ground has two heights", *words]
     elif not full:

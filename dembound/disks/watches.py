@@ -24,6 +24,8 @@ STEPS = 1024
 class FarDisks(Every):
     """Counts the disks that touch nothing and have fallen below the base by more than the height of the scene.
 
+    Where walls reach further down than the base, their lowest point stands in for it.
+
     Parameters
     ----------
     scene : the scene. retires : whether they are put to rest, unless the sides move them.
@@ -39,7 +41,8 @@ class FarDisks(Every):
         super().__init__(STEPS)
         _, low, _, high = scene.case.box
         self._height = scene.assembly.positions[:, 1]
-        self._depth = low - (high - low)
+        lines = [low, *(float(line[:, 1].min()) for line in scene.walls.values())]
+        self._depth = min(lines) - (high - low)
         self._retires = retires
         self._moved_by_sides = np.isin(np.arange(scene.disk_count), scene.supports.node)
         self.far = np.zeros(scene.disk_count, dtype=np.bool_)
@@ -56,6 +59,8 @@ class FarDisks(Every):
             return
         touching = [part.contacts.coordination(part.geometry) for part in system.disks.parts if part.contacts]
         fresh = below & ~self.far & (np.concatenate(touching) == 0)
+        if system.walls is not None:
+            fresh[system.walls.touching.disk] = False
         if not fresh.any():
             return
         self.far |= fresh

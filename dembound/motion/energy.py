@@ -200,7 +200,7 @@ class Ledger(Tracker):
         sides = np.column_stack([state.side_work[1], self._in_springs(run, u)])
         loads = 0.0
         if run.sides is not None and run.sides.has_loads:
-            loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
+            loads = outside - system.work_of_walls - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
         taken = damping, friction, crack, closing
         error = kinetic + contact + bond + stepping + sum(taken) - load - balance - outside - law_switch
         if not self.entries:

@@ -213,6 +213,18 @@ class System:
         return 0.0
 
     @property
+    def work_of_walls(self) -> float:
+        """Work (J) of the walls that move, up to the last whole step; 0 by default."""
+        return 0.0
+
+    def wall_samples(self, steps: np.ndarray) -> np.ndarray:
+        """Displacement (m) and force (N), along x and y, of and on each wall (k, w, 4) in some of the last steps (k,).
+
+        By default there are no walls.
+        """
+        return np.zeros((len(steps), 0, 4))
+
+    @property
     def balancing_force(self) -> np.ndarray | None:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
         return None

@@ -297,6 +297,11 @@ class Scene(ABC):
         return dict(self.edges)
 
     @property
+    def walls(self) -> Mapping[str, np.ndarray]:
+        """Points (p, 2) m of rigid walls that it touches, by name; by default none."""
+        return {}
+
+    @property
     def tied(self) -> Mapping[str, np.ndarray]:
         """Nodes (k,) on which ties act, by the side they belong to; by default none."""
         return {}

@@ -22,6 +22,7 @@ from dembound.results.reader import (
     snapshot_of,
     snapshots_of,
     text_of,
+    walls_at,
 )
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced", "layer"]
@@ -31,6 +32,9 @@ OF_THE_RUN = ("peak", "layer")
 
 FORCES = "forces"
 """Name of the picture of contacts, see plot/packing.py."""
+
+SEEN = 0.3
+"""Part of the size of all disks as far as which walls beyond them are shown."""
 
 MEGA = 1e6
 """Pascals in a megapascal."""
@@ -59,7 +63,8 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
-    ground; foot, the height (m) below which motion of the continuum is without the free field.
+    ground; foot, the height (m) below which motion of the continuum is without the free field; walls (p, 2) m, the
+    points of each.
     """
 
     positions: np.ndarray
@@ -73,6 +78,7 @@ class Disks:
     holes: tuple[Hole, ...] = ()
     layers: tuple[LayersOfSide, ...] = ()
     foot: float | None = None
+    walls: tuple[np.ndarray, ...] = ()
 
     @cached_property
     def own_window(self) -> Window:
@@ -87,8 +93,15 @@ class Disks:
 
     @cached_property
     def window(self) -> Window:
-        """The whole scene, with its continuum."""
-        return self.own_window if self.continuum is None else self.own_window.with_other(self.continuum.window)
+        """The whole scene, with its continuum, and walls as far as `SEEN` of the disks' size beyond them."""
+        own = self.own_window
+        for line in self.walls:
+            margin = SEEN * float(max(self.own_window.size))
+            near = np.clip(
+                line, self.own_window.corner - margin, self.own_window.corner + self.own_window.size + margin
+            )
+            own = own.with_other(Window(near.min(axis=0), np.ptp(near, axis=0)))
+        return own if self.continuum is None else own.with_other(self.continuum.window)
 
     @property
     def in_words(self) -> str:
@@ -124,7 +137,8 @@ class Field:
     captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
     of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
-    moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none.
+    moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none;
+    walls (p, 2) m as they are drawn, None where they are at the start.
     """
 
     captions: list[str]
@@ -137,6 +151,7 @@ class Field:
     beyond: np.ndarray | None = None
     moved: np.ndarray | None = None
     moved_beyond: np.ndarray | None = None
+    walls: tuple[np.ndarray, ...] | None = None
 
     @property
     def label(self) -> str:
@@ -168,6 +183,7 @@ def read_disks(file: h5py.File) -> Disks:
         holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
         layers=tuple(_layers_in(file)),
         foot=_foot(file),
+        walls=tuple(walls_at(file, 0.0).values()),
     )
 
 

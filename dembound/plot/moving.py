@@ -29,7 +29,7 @@ from dembound.plot.style import (
     time_unit,
 )
 from dembound.results.histories import read_histories
-from dembound.results.reader import cracks_until, open_record, reading
+from dembound.results.reader import cracks_until, open_record, reading, walls_at
 
 MOST_BELOW = 4
 """Number of monitors above which long rows of them are not shown in full below a body that moves."""
@@ -291,4 +291,7 @@ class MovingScene:
         beyond = None
         if self._disks.continuum is not None:
             beyond = self._exaggerate * group[f"{GROUP}/displacement"][:, :2][None]
-        return replace(shown, cracks=cracks, moved=moved[None], moved_beyond=beyond)
+        walls = walls_at(group.file, float(group.attrs["time"]), self._exaggerate)
+        return replace(
+            shown, cracks=cracks, moved=moved[None], moved_beyond=beyond, walls=tuple(walls.values()) or None
+        )

@@ -17,9 +17,9 @@ from matplotlib.patches import Rectangle
 from dembound.errors import CaseError
 from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks, frame
 from dembound.plot.field import Disks, read_disks
-from dembound.plot.scene import DRAWING, LONG, part_around
+from dembound.plot.scene import DRAWING, LONG, mark_walls, part_around
 from dembound.plot.style import COLOURS, finished, new_figure, styled
-from dembound.results.reader import open_record, snapshot_of, snapshots_of
+from dembound.results.reader import open_record, snapshot_of, snapshots_of, walls_at
 
 BLUE, RED, GREEN, YELLOW = (COLOURS[index] for index in (0, 1, 2, 5))
 
@@ -179,7 +179,7 @@ class Chains:
     """Contacts at one time.
 
     time in s; positions (n, 2) m of the disks; pairs (b, 2) of disks; ends (b, 2, 2) m of the lines; force (b,) N/m
-    along them, tension positive.
+    along them, tension positive; walls (p, 2) m, the points of each.
     """
 
     time: float
@@ -187,6 +187,7 @@ class Chains:
     pairs: np.ndarray
     ends: np.ndarray
     force: np.ndarray
+    walls: tuple[np.ndarray, ...] = ()
 
     @property
     def largest(self) -> np.ndarray:
@@ -221,6 +222,7 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
         shown = window.touches(chains.positions, disks.radii)
         draw_disks(panel, chains.positions[shown], disks.radii[shown], facecolors=SHADE, linewidths=0.0)
     drawn = _draw_lines(panel, window, chains, max(LEAST_WIDTH, 72.0 * scale * WIDEST * 2.0 * disks.radii.mean()))
+    mark_walls(panel, chains.walls)
     for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
         if window.extent[0] < seam < window.extent[1]:
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
@@ -240,7 +242,8 @@ def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
     pairs = group["contacts/particles"][:]
     begin = positions[pairs[:, 0]]
     ends = np.stack([begin, begin + group["contacts/vector"][:]], axis=1)
-    return Chains(float(group.attrs["time"]), positions, pairs, ends, group[COLUMN][:])
+    time = float(group.attrs["time"])
+    return Chains(time, positions, pairs, ends, group[COLUMN][:], tuple(walls_at(file, time).values()))
 
 
 def _window(disks: Disks, chains: Chains) -> Window:

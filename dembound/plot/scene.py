@@ -208,6 +208,7 @@ def draw_panel(
     for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
         if window.extent[0] < seam < window.extent[1]:
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
+    mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     _mark_layers(panel, disks, window, scale / panel.figure.dpi)
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
@@ -220,6 +221,13 @@ def draw_panel(
         else:
             axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
+
+
+def mark_walls(panel: Axes, walls: Sequence[np.ndarray]) -> None:
+    """A line for every wall (p, 2) m."""
+    for number, line in enumerate(walls):
+        looks: dict[str, Any] = {"color": "black", "linewidth": 1.6, "zorder": ABOVE_DISKS, "scalex": False}
+        panel.plot(*line.T, label=None if number else "wall", scaley=False, **looks)
 
 
 def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:

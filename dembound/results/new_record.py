@@ -29,6 +29,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             with ranges the name of its range
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
+    walls/<wall>/           points (p, 2) at the start; time (k,), displacement (k, 2), force (k, 2) of the disks on
+                            it, at the times of histories
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the mean of those half a step before and after, if the
                             run got so far (attribute velocity_of_half_step otherwise); coordination (n,) of a
                             history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
@@ -95,6 +97,11 @@ SIDE_HISTORY = (
     ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
     ("force", (2,), "f8", "N/m"),
 )
+WALL_HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (2,), "f8", "m"),
+    ("force", (2,), "f8", "N/m"),
+)
 LAWS = (("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s"))
 CRACKS = (
     ("time", (), "f8", "s"),
@@ -145,7 +152,8 @@ def require_laid_out(file: h5py.File, scene: Scene, counts: Mapping[str, int]) -
         layout.visititems(expected.__setitem__)
         for name, item in expected.items():
             kind = name.split("/")[0]
-            _require_like(file, name, item, counts["sides" if kind == "boundaries" else kind] if _grows(item) else 0)
+            rows = counts[{"boundaries": "sides"}.get(kind, kind)] if _grows(item) else 0
+            _require_like(file, name, item, rows)
     snapshots = snapshots_of(file)[: counts["snapshots"]]
     if len(snapshots) < counts["snapshots"]:
         raise _lacking(file, f"{counts['snapshots']} snapshots, it has {len(snapshots)}")
@@ -197,6 +205,9 @@ def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Seq
     write_inputs(file, scene.case.files)
     _make_histories(file, scene)
     _write_boundaries(file, scene, sides)
+    for name, points in scene.walls.items():
+        write(file.create_group(f"walls/{name}"), "points", points, "m")
+        make(file[f"walls/{name}"], WALL_HISTORY)
     make(file.create_group("cracks"), CRACKS)
     if entered is not None:
         _make_energy(file, scene, entered)

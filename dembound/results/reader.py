@@ -328,3 +328,14 @@ def record_names(paths: Sequence[Path]) -> list[str]:
         name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)
         for name, folder, path in zip(names, folders, paths, strict=True)
     ]
+
+
+def walls_at(file: h5py.File, time: float, exaggerate: float = 1.0) -> dict[str, np.ndarray]:
+    """Points (p, 2) m of the walls of an open record at a time (s), by name, with displacements times `exaggerate`."""
+    found = {}
+    for name, group in file.get("walls", {}).items():
+        moved = np.zeros(2)
+        if len(group["time"]) > 0:
+            moved = np.array([np.interp(time, group["time"][:], column) for column in group["displacement"][:].T])
+        found[name] = group["points"][:] + exaggerate * moved
+    return found

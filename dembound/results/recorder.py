@@ -25,6 +25,7 @@ from dembound.results.new_record import (
     SIDE_HISTORY,
     UNBALANCED,
     VELOCITY_UNIT,
+    WALL_HISTORY,
     begin_record,
     header_of,
     write_stages,
@@ -82,6 +83,7 @@ class Recorder:
         self._samples: list[np.ndarray] = []
         self._side_samples: list[np.ndarray] = []
         self._side_times: list[np.ndarray] = []
+        self._wall_samples: list[np.ndarray] = []
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a", libver=FORMAT)
@@ -131,6 +133,7 @@ class Recorder:
         return {
             "histories": max((len(each["time"]) for each in self._histories), default=0),
             "sides": max((len(each["time"]) for each in self._side_histories), default=0),
+            "walls": max((len(each["time"]) for each in self._wall_histories), default=0),
             "cracks": len(self._cracks["time"]),
             "energy": 0 if self.ledger is None else self.ledger.regular_entries,
             "laws": len(self._laws["time"]),
@@ -141,6 +144,7 @@ class Recorder:
         """The datasets that grow, kept because searching a dataset takes as long as extending it."""
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
         self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
+        self._wall_histories = [dict(self.file["walls"][name]) for name in self.scene.walls]
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
         self._energy = datasets_of(self.file["energy"]) if self.ledger is not None else {}
 
@@ -155,8 +159,10 @@ class Recorder:
             sides = self.run.side_samples
             self._side_times.append(sides.steps * step)
             self._side_samples.append(sides.record)
+        if self.scene.walls:
+            self._wall_samples.append(self.run.system.wall_samples(begun + rows))
         self._broken.append(self.run.system.take_cracks(state.step))
-        kept = sum(samples.nbytes for samples in self._samples + self._side_samples)
+        kept = sum(samples.nbytes for samples in self._samples + self._side_samples + self._wall_samples)
         if time.monotonic() - self._written >= KEPT_SECONDS:
             self.flush()
         elif kept >= KEPT_BYTES:
@@ -249,6 +255,8 @@ class Recorder:
                 _cut(history, counts["histories"])
         for name in self._sides:
             _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["sides"])
+        for name in self.scene.walls:
+            _cut({column: self.file["walls"][name][column] for column, *_ in WALL_HISTORY}, counts["walls"])
         for name in ("cracks", "energy", "laws"):
             _cut(datasets_of(self.file[name]), counts[name])
         for side in self.file.get("energy/sides", {}).values():
@@ -272,6 +280,11 @@ class Recorder:
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
             self._times, self._samples = [], []
+            for index, history in enumerate(self._wall_histories):
+                walls = np.concatenate([each[:, index] for each in self._wall_samples])
+                for (name, *_), values in zip(WALL_HISTORY, (times, walls[:, :2], walls[:, 2:]), strict=True):
+                    extend(history[name], values)
+            self._wall_samples = []
             for index, history in enumerate(self._histories):
                 extend(history["time"], times)
                 extend(history["displacement"], samples[:, index, :3])

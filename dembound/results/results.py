@@ -98,7 +98,18 @@ class Arrays(Mapping[str, np.ndarray]):
             raise missing("array", name, self._names, f"{self._record.path}, {self._group}")
 
 
-_PARTS = ("histories", "snapshots", "particles", "boundaries", "cracks", "energy", "side_energies", "laws", "summary")
+_PARTS = (
+    "histories",
+    "snapshots",
+    "particles",
+    "boundaries",
+    "walls",
+    "cracks",
+    "energy",
+    "side_energies",
+    "laws",
+    "summary",
+)
 """Attributes of `Results` with recorded data."""
 
 
@@ -141,6 +152,7 @@ class Results:
     histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
     boundaries : of every side its particles and their peak velocities, and of the side as a whole ``time`` (k,), mean
     ``displacement`` (k, 3) and ``force`` (k, 2).
+    walls : of every wall its ``points`` (p, 2) at the start, and ``time`` (k,), ``displacement`` and ``force`` (k, 2).
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
@@ -157,6 +169,7 @@ class Results:
             self.particles = self._array(file, "particles")
             self.histories = self._arrays(file, "histories", "monitor")
             self.boundaries = self._arrays(file, "boundaries", "side")
+            self.walls = self._arrays(file, "walls", "wall")
             self.snapshots: Sequence[Arrays] = _Snapshots(self._record, snapshots_of(file).names)
             self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)

@@ -81,6 +81,7 @@ COLUMNS: Mapping[str, Shapes] = {
         "displacement": (3,),
         "force": (2,),
     },
+    "walls/[^/]+": {"points": (2,), "time": (), "displacement": (2,), "force": (2,)},
     "snapshots/[^/]+": {"displacement": (3,), "velocity": (3,), "coordination": (), "unbalanced": (2,), "damage": ()},
     "cracks": {"time": (), "position": (2,), "particles": (2,), "shear": ()},
     "laws": {"time": ()},

@@ -20,7 +20,7 @@ from dembound.motion.state import Arrays
 from dembound.results.committed import new_file
 from dembound.results.datasets import CHUNK_BYTES, chunk_rows, extend
 from dembound.results.new_record import MOTION, UNBALANCED
-from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until
+from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until, walls_at
 
 if TYPE_CHECKING:
     import h5py
@@ -151,7 +151,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
     folder
         created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one, and
         ``particles.pvd``, or ``particles.vtkhdf``; ``view.py`` and, where bonds broke, ``cracks.vtu``; the same files
-        for ``contacts`` if the record has them; for a bar ``bar_0000.vtu`` … in place of ``particles``.
+        for ``contacts`` and ``walls`` if the record has them; for a bar ``bar_0000.vtu`` … in place of ``particles``.
     kind
         the kind of body that the run is of.
     files
@@ -178,6 +178,7 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
                 look()
                 time = float(snapshot.attrs["time"])
                 fields = {name: dataset[:] for name, dataset in datasets_in(snapshot).items()}
+                fields |= {f"walls/{name}": points for name, points in walls_at(file, time).items()}
                 for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():
                     if name not in series:
                         series[name] = stack.enter_context(_series(folder, name, files))

@@ -124,14 +124,14 @@ def earliest(ground: Level, time_step: float, modulus: Modulus = "as_run") -> fl
 
 
 def ground_of_file(path: Path) -> DiskCase:
-    """The case of a file without loads, static stage and holes; its name says that it had holes.
+    """The case of a file without loads, static stage, walls and holes; its name says that it had holes.
 
     Other waves take the place of its own, whose files need not exist yet. Errors as of a case, and CaseError for damped
     ground whose band is that of its waves.
     """
     data = parsed(path.read_text(encoding="utf-8-sig"))
     holes = data.pop("hole", [])
-    for name in ("load", "static"):
+    for name in ("load", "static", "wall"):
         data.pop(name, None)
     damped = any("quality_factor" in table for table in (data.get("material", {}), *data.get("layer", ())))
     if damped and "band" not in data.get("damping", {}):

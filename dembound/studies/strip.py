@@ -98,11 +98,12 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
         **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
         "no holes": bool(case.holes),
         "no static stage": given.static is not None,
+        "no walls": bool(case.wall),
         "no loads": bool(case.load),
         f"the {material.law} law": given.material.law != material.law,
     }
     plain = replace(
-        case, boundary=boundary, material=material, static=None, hole=(), load=(), ground=case.ground.level()
+        case, boundary=boundary, material=material, static=None, hole=(), wall=(), load=(), ground=case.ground.level()
     )
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 

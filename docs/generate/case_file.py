@@ -22,6 +22,7 @@ from dembound.casefile.disks.model import DiskRun, Reduce
 from dembound.casefile.disks.monitor_rows import MonitorTable
 from dembound.casefile.disks.static import Static
 from dembound.casefile.disks.targets import Scatter
+from dembound.casefile.disks.wall import Wall
 from dembound.casefile.tables import Chart, ChartChoice, Output, Sweep
 from dembound.table import LARGEST_WHOLE, Table, name_of
 
@@ -109,6 +110,7 @@ DISKS = (
     Part("`[wave]`", waves.TYPES, waves.Wave, more="Each wave is a table `[wave.NAME]`."),
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
     Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
+    Part("`[[wall]]`", (Wall,), guide="tasks/walls"),
     Part("`[[monitor]]`", (MonitorTable,), guide="tasks/show_results"),
     RUN,
     Part("`[output]`", (Output,), guide="tasks/show_results"),
@@ -135,13 +137,13 @@ facts, warnings and all mistakes without running it.
 
 - **Units** are SI, angles degrees. Two dimensions mean a thickness of 1 m: forces are per metre.
 - **Signs**: velocities are positive along +x and +y on every side; tension is positive, a pressure pushes.
-- **Names** of loads, holes and monitors consist of A–Z, a–z, 0–9, `_`, `-` and `.` (not first).
+- **Names** of loads, holes, walls and monitors consist of A–Z, a–z, 0–9, `_`, `-` and `.` (not first).
 - **Sizes**: numbers are 0 or between 1e-30 and 1e30; a scene has at most 5e8 disks, a random brick 1e6, a bar 2e6
   spacings, a case 1,000 monitors.
 - **Keys**: `seed` = 0 has a default, (m) is a positive number in metres. What is not required may be left out; unknown
   keys and tables are refused.
-- `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes and monitors go by their names or
-  numbers. `dembound schema` writes this page for editors.
+- `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes, walls and monitors go by their
+  names or numbers. `dembound schema` writes this page for editors.
 - Z is Zhou et al. (2018), L is Lu & Wang (2016).
 
 At the top level a case may have a `title`, one line for pictures and reports.

@@ -68,6 +68,7 @@ class Lab:
         boundary: dict[str, Any] | None = None,
         wave: dict[str, Any] | None = None,
         load: Sequence[dict[str, Any]] = (),
+        wall: Sequence[dict[str, Any]] = (),
         static: dict[str, Any] | None = None,
         duration: float = 1.0,
         **packing: Any,
@@ -92,6 +93,7 @@ class Lab:
             },
             "wave": {"pulse": wave} if wave else {},
             "load": [{"name": f"load{k}", **table} for k, table in enumerate(load)],
+            **({"wall": [{"name": f"wall{k}", **table} for k, table in enumerate(wall)]} if wall else {}),
             **({"static": static} if static else {}),
             "run": {"duration": duration},
         }

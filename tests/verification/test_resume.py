@@ -126,6 +126,24 @@ CASES = {
         "static": {"boundary": {"bottom": {"type": "roller"}}, "ratio": 1e-3},
         "run": {"duration": 1.0, "until": "peak"},
     },
+    "on walls that move": DISKS
+    | {
+        "packing": LATTICE,
+        "material": BRITTLE | {"dp_nratio": 0.2},
+        "boundary": {},
+        "wall": [
+            {"name": "floor", "points": [[-9.0, 0.0], [9.0, 0.0], [20.0, -1.0]], "fric": 0.5, "dp_nratio": 0.2},
+            {
+                "name": "ram",
+                "points": [[-0.05, 0.3], [-0.05, 9.0]],
+                "wave_x": "pulse",
+                "wave_y": "pulse",
+                "until": 0.03,
+            },
+        ],
+        "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+        "static": {"ratio": 1e-2},
+    },
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "ranges": BAR | {"bar": RANGES},

@@ -65,6 +65,15 @@ SCENES = {
     },
     "breaking": {"size": ROWS, "boundary": ENDS, "material": WEAK},
     "breaking, disk by disk": {"size": FEW, "boundary": ENDS, "material": WEAK},
+    "on walls": {
+        "size": ROWS,
+        "material": {"law": "linearpbond", "emod": 1e8, "pb_emod": 0.0, "fric": 0.5, "dp_nratio": 0.1},
+        "wall": [
+            {"points": [[-9.0, -0.3], [20.0, -0.3], [60.0, -2.3]], "fric": 0.5},
+            {"points": [[-0.4, 0.5], [-0.4, 12.0]], "velocity": [20.0, 0.0]},
+        ],
+        "load": [{"acceleration": [3.0, -9.81]}],
+    },
     "settled, free field": {
         "size": ROWS,
         "boundary": FREE_FIELD,

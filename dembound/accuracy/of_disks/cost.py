@@ -168,6 +168,7 @@ class Steps:
                 outside=outside or self.case.outside,
                 ground=Ground(),
                 hole=(),
+                wall=(),
                 load=(),
                 monitor=(),
                 wave={},

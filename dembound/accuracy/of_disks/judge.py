@@ -73,6 +73,13 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
     return least
 
 
+def _require_linear(case: DiskCase) -> None:
+    """Raise CaseError where motion is not that of a linear medium at the start, by its law or as disks touch walls."""
+    require_linear(case.material.law)
+    if case.wall:
+        raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)
+
+
 def require_one_ground(case: DiskCase) -> None:
     """Raise CaseError for ground whose layers differ left and right, of which errors are not predicted."""
     if case.is_unlike:
@@ -126,7 +133,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         longest: float | None = None,
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
-        require_linear(case.material.law)
+        _require_linear(case)
         require_one_ground(case)
         return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
@@ -171,7 +178,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building
         and running the companions.
         """
-        require_linear(case.material.law)
+        _require_linear(case)
         require_one_ground(case)
         _require_known(case)
         kept = [*kept, "packing.radius"] if of == "disks" else kept
@@ -257,7 +264,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
-        require_linear(scene.case.material.law)
+        _require_linear(scene.case)
         require_one_ground(scene.case)
         return quick_causes(scene)
 

@@ -14,6 +14,7 @@ from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
+from dembound.casefile.disks.wall import Wall
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
 from dembound.casefile.tables import Run
@@ -51,7 +52,7 @@ class DiskCase(Case):
     ----------
     run, ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
-    layer : from the surface down; none: the ground is uniform. hole : in the order of the file.
+    layer : from the surface down; none: the ground is uniform. hole, wall : in the order of the file.
     """
 
     run: DiskRun
@@ -66,6 +67,7 @@ class DiskCase(Case):
     static: Static | None = None
     layer: tuple[Layer, ...] = ()
     hole: tuple[Hole, ...] = ()
+    wall: tuple[Wall, ...] = ()
     load: tuple[Load, ...] = ()
     monitor: tuple[Monitor, ...] = ()
 
@@ -97,7 +99,7 @@ class DiskCase(Case):
     @property
     def begins_elastic(self) -> bool:
         """Whether the elastic law serves first in place of a history-dependent one."""
-        return self.material.begins_elastic and not self.relaxes
+        return self.material.begins_elastic and not (self.relaxes or self.wall)
 
     @property
     def joints(self) -> tuple[float, ...]:
@@ -184,7 +186,8 @@ class DiskCase(Case):
     @property
     def files(self) -> dict[str, str]:
         """Texts of the files that the case refers to, by their paths in it."""
-        return super().files | self.ground.files
+        own = super().files | self.ground.files
+        return own | {path: text for wall in self.wall for path, text in wall.files.items()}
 
     def hole_of(self, load: Load) -> Hole:
         """The hole on whose wall a pressure acts."""
@@ -218,6 +221,11 @@ class DiskCase(Case):
     def entering(self) -> set[str]:
         """Names of the waves that enter through driven sides, or at an angle."""
         return super().entering | (set() if self.incident is None else {self.incident.wave})
+
+    @property
+    def moving(self) -> set[str]:
+        """Names of the waves by which walls move."""
+        return {name for wall in self.wall for name in wall.waves.values()}
 
     @cached_property
     def intact(self) -> dict[str, int]:

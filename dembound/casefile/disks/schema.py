@@ -27,6 +27,7 @@ from dembound.casefile.disks.static import Static, static_problems
 from dembound.casefile.disks.surface import surface_problems
 from dembound.casefile.disks.targets import law_problems, with_history
 from dembound.casefile.disks.unlike import unlike_problems
+from dembound.casefile.disks.wall import Wall, wall_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
     Schema,
@@ -51,6 +52,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     keys that the file has, valid or not.
     """
     named = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"]) if load.wave is not None]
+    for place, wall in numbered("wall", tables["wall"]):
+        named += [(f"{place}.wave_{'xy'[axis]}", name) for axis, name in wall.waves.items()]
     if incident := tables["incident"]:
         named.append(("incident.wave", incident.wave))
         yield from incident_problems(incident, tables)
@@ -81,6 +84,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from lowered_problems(tables)
     yield from unlike_problems(tables)
     yield from law_problems(tables)
+    yield from wall_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["damping"] and tables["material"]:
@@ -95,7 +99,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         whole = bool(tables["packing"] and tables["ground"])  # else it is not known whether its ground has two heights
-        yield from static_problems(*settling, has_column=whole and ground.meet is None and not lowered_in(tables))
+        beside = whole and ground.meet is None and not lowered_in(tables)
+        yield from static_problems(*settling, has_column=beside, has_walls=bool(tables["wall"]))
     if tables["run"]:
         yield from run_problems(tables)
     if tables["output"]:
@@ -206,6 +211,7 @@ SCHEMA = Schema(
     lists={
         "layer": TypeAdapter(Layer),
         "hole": TypeAdapter(HoleTable),
+        "wall": TypeAdapter(Wall),
         "load": TypeAdapter(Load),
         "monitor": TypeAdapter(MonitorTable),
     },

@@ -102,10 +102,12 @@ def static_problems(
     motion: Motion | None,
     *,
     has_column: bool,
+    has_walls: bool = False,
 ) -> Iterator[str]:
     """Check the static stage; a table or an entry that is invalid on its own is None.
 
-    has_column : whether a free-field column represents the ground beyond a continuum.
+    has_column : whether a free-field column represents the ground beyond a continuum. has_walls : whether there are
+    walls, on which the body may rest.
     """
     for side in static.boundary:
         if (table := boundaries.get(side)) and table.is_periodic:
@@ -126,7 +128,7 @@ def static_problems(
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
     if motion and None not in static.boundary.values():
-        yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
+        yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column, has_walls=has_walls)
 
 
 def _without_weight(loads: Sequence[Load | None]) -> Iterator[str]:
@@ -151,14 +153,20 @@ def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: M
 
 
 def _unheld_loads(
-    static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion, *, has_column: bool
+    static: Static,
+    boundaries: Sides,
+    loads: Sequence[Load | None],
+    motion: Motion,
+    *,
+    has_column: bool,
+    has_walls: bool,
 ) -> Iterator[str]:
-    """Steady loads against which the body, or the free-field column, is not held."""
+    """Steady loads against which the body, or the free-field column, is not held; a body may rest on walls."""
     beside = any(table.needs_column or (table.is_outside and has_column) for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
-        if load.wave is not None:
-            continue
         on_column = beside and load.is_everywhere
+        if load.wave is not None or (has_walls and not on_column):
+            continue
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
             kinds = '"fixed"' if on_column and axis == 0 else '"fixed" or "roller"'

@@ -13,6 +13,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import packing_pieces
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
+from dembound.disks.stepping.walls import Touching
 from dembound.kernels.contacts import UPDATED
 from dembound.motion.part import Cracks
 from dembound.motion.state import Arrays, arrays_of_owner
@@ -209,6 +210,8 @@ class Settled:
         if self.uniformity is not None:
             kept |= {f"uniformity/{name}": values for name, values in self.uniformity.saved_arrays().items()}
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
+        if start.touching is not None:
+            kept |= {f"walls/{name}": values for name, values in start.touching._asdict().items()}
         for part, pairs in start.contacts.items():
             kept |= {f"contacts/{part}/{name}": values for name, values in pairs.saved_arrays().items()}
         return kept
@@ -219,9 +222,15 @@ class Settled:
         contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in saved) else {}
         for part, pairs in contacts.items():
             pairs.restore(arrays_of_owner(saved, f"contacts/{part}"))
+        walls = arrays_of_owner(saved, "walls")
         cracks, uniformity = arrays_of_owner(saved, "cracks"), arrays_of_owner(saved, "uniformity")
         return cls(
-            start=Start(among(saved["displacement"], scene), contacts, bool(saved["has_history"])),
+            start=Start(
+                among(saved["displacement"], scene),
+                contacts,
+                bool(saved["has_history"]),
+                Touching(**{name: values.copy() for name, values in walls.items()}) if walls else None,
+            ),
             steps=int(saved["steps"]),
             ratio=float(saved["ratio"]),
             mean_reaction=float(saved["mean_reaction"]),
@@ -268,6 +277,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]
     if case.is_unlike:
         keys["sides_of_layers"] = [case.ground.meet, *(layer.side for layer in case.layer)]
+    if case.wall:
+        keys["wall"] = [{**every_key(wall), "points": wall.line} for wall in case.wall]
     if scene.ground.is_damped:
         each = scene.ground.mechanisms_by_layer
         keys["unrelaxed"] = [one and one.unrelaxed * (one.relaxed if scene.ground.relaxes else 1.0) for one in each]

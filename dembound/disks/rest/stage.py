@@ -300,7 +300,12 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(
-        start=Start(among(displacement, scene), system.contacts, system.uses_history),
+        start=Start(
+            among(displacement, scene),
+            system.contacts,
+            system.uses_history,
+            None if system.walls is None else system.walls.touching,
+        ),
         steps=simulation.state.step,
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,

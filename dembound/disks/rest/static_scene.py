@@ -153,9 +153,13 @@ class StaticScene:
         return np.where(self._moves, (forces + system.load)[:2, : self._moves.shape[1]], 0.0)
 
     def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:
-        """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part."""
+        """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part.
+
+        Walls count as contacts.
+        """
         unbalanced = np.hypot(*self.unbalanced(system, forces)).mean()
-        pair = np.concatenate([np.hypot(*pairs.arrays.force[:2]) for pairs in contacts.values()])
+        walls = [] if system.walls is None else [system.walls.sizes]
+        pair = np.concatenate([*(np.hypot(*pairs.arrays.force[:2]) for pairs in contacts.values()), *walls])
         acting = pair > 0.0
         return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)
 

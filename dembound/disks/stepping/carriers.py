@@ -12,6 +12,7 @@ from dembound.disks.body import DiskBody
 from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.scene_parts import DiskParts, contact_lists, disks_on_foot
+from dembound.disks.stepping.walls import WallPart
 from dembound.packings.cut import cut_contacts
 
 
@@ -20,11 +21,12 @@ class RestForces:
 
     Parameters
     ----------
-    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed.
+    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed. walls : its walls, as
+    further contacts; None: there are none.
     """
 
-    def __init__(self, scene: DiskBody, disks: DiskParts) -> None:
-        self._scene, self._disks = scene, disks
+    def __init__(self, scene: DiskBody, disks: DiskParts, walls: WallPart | None = None) -> None:
+        self._scene, self._disks, self._walls = scene, disks, walls
 
     def elastic(self, displacement: np.ndarray) -> np.ndarray:
         """Forces (3, n) of contacts and of the seam under the elastic law."""
@@ -44,6 +46,8 @@ class RestForces:
             self._disks.adopt(displacement)
         for pairs in self._disks.contacts.values():
             pairs.push(displacement)
+        if self._walls is not None:
+            self._walls.push(displacement)
         return self.last(self._disks.contacts)
 
     def as_built(self) -> np.ndarray:
@@ -58,6 +62,8 @@ class RestForces:
         force = np.zeros((3, self._scene.count))
         for pairs in contacts.values():
             pairs.add_forces(force)
+        if self._walls is not None:
+            self._walls.add_forces(force)
         return force + self.across(contacts)
 
     def across(self, contacts: Mapping[str, ContactList]) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contact
 from dembound.disks.stepping.damped_ground import unrelaxed
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.scene_parts import DiskParts
+from dembound.disks.stepping.walls import WallPart
 from dembound.kernels.contacts import REFERENCE
 from dembound.kernels.tables.contacts import Contacts
 from dembound.motion.part import Part, System, Tie
@@ -88,15 +90,35 @@ class RecordedDisks(System):
     Parameters
     ----------
     scene : the scene. disks : its parts of disks. beyond : its continua. ties : all of the scene. load : (3, n) N and
-    N·m, steady forces and moments.
+    N·m, steady forces and moments. walls : that its disks touch; None: there are none.
     """
 
     def __init__(
-        self, scene: DiskBody, disks: DiskParts, beyond: Sequence[Part], ties: Sequence[Tie], load: np.ndarray
+        self,
+        scene: DiskBody,
+        disks: DiskParts,
+        beyond: Sequence[Part],
+        ties: Sequence[Tie],
+        load: np.ndarray,
+        walls: WallPart | None = None,
     ) -> None:
-        super().__init__([*disks.parts, *beyond], ties, load)
-        self.scene, self.disks = scene, disks
+        super().__init__([*filter(None, [walls]), *disks.parts, *beyond], ties, load)
+        self.scene, self.disks, self.walls = scene, disks, walls
         self._stress_at_rest: np.ndarray | None = None
+
+    def laws(self) -> tuple[NamedTuple, ...]:
+        """The bundles of all parts; walls come first, and their forces leave the steady loads at the end."""
+        laws = super().laws()
+        return laws if self.walls is None else (*laws, self.walls.unloading)
+
+    @property
+    def work_of_walls(self) -> float:
+        """Work (J) of the walls that move, up to the last whole step."""
+        return 0.0 if self.walls is None else self.walls.supplied
+
+    def wall_samples(self, steps: np.ndarray) -> np.ndarray:
+        """Displacement (m) and force (N) of walls (k, w, 4), see `WallPart.samples`."""
+        return super().wall_samples(steps) if self.walls is None else self.walls.samples(steps)
 
     @property
     def recorded_parts(self) -> tuple[DiskPart, ...]:

@@ -189,6 +189,11 @@ class DiskPart(Part):
             self.memories.restore(saved)
 
     @property
+    def fastest(self) -> np.ndarray:
+        """Speeds (chunks,) m/s of its disks after a step under the history-dependent law; supports move others."""
+        return self._fastest
+
+    @property
     def geometry(self) -> int:
         """Geometry of the pairs under the law in use, see kernels/contacts.py."""
         if self.contacts is None:

@@ -20,6 +20,7 @@ from dembound.disks.material.layered import LayeredGround
 from dembound.disks.stepping.arms import arms_of, arms_per_bond
 from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
 from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
+from dembound.disks.stepping.walls import Touching
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.jump import nodes_on_slit
 from dembound.kernels.contacts import UPDATED
@@ -36,12 +37,14 @@ class Start:
     """A body at rest to start from: displacement (3, n) m and rad since it was built, and its contacts.
 
     contacts : of each part by name, empty if the scene's law has no history. The system that starts from them changes
-    them, so a start can be used only once. has_history : whether they have any history.
+    them, so a start can be used only once. has_history : whether they have any history. touching : the contacts with
+    walls; None without any.
     """
 
     displacement: np.ndarray
     contacts: Mapping[str, ContactList] = field(default_factory=dict)
     has_history: bool = False
+    touching: Touching | None = None
 
     @property
     def left_elastic_law(self) -> bool:

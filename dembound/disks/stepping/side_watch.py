@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.casefile.disks.static import keeps_forces
 from dembound.disks.body import DiskBody
 from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
@@ -68,6 +69,8 @@ class SideWatch:
         self._reached = np.full((len(self._places), 2), -1)  # count, step of the first
         self._reached[:, 0] = 0
         self._sides: list[str] = []
+        case = scene.case  # on walls alone a body leaves nothing at its sides but what was not yet in balance
+        self._bears = not case.wall or any(keeps_forces(case.static, side, case.side(side)) for side in scene.edges)
 
     def look(
         self,
@@ -84,8 +87,8 @@ class SideWatch:
         """
         self._sides = balance.sides
         self._note_reached(contacts, step)
-        self.ended = balance.share_of_ended()
-        turn, at = balance.largest_turn(displacement)
+        self.ended = balance.share_of_ended() if self._bears else 0.0
+        turn, at = balance.largest_turn(displacement) if self._bears else (0.0, 0)
         if turn > self._turn[0]:
             self._turn[:] = turn, at, step
         work = balance.relative_work(displacement)

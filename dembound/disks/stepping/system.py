@@ -17,6 +17,7 @@ from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
 from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
 from dembound.disks.stepping.side_watch import SideWatch
+from dembound.disks.stepping.walls import WallPart
 from dembound.disks.surroundings.jump import JumpTie
 from dembound.kernels.common import BROKE, LAW_ENDS
 from dembound.kernels.follower import turn_forces
@@ -74,10 +75,11 @@ class DiskSystem(RecordedDisks):
             grids(scene, time_step, damped=not settling),
             ties,
             scene.steady_load if load is None else load,
+            _walls(scene, time_step, disks, start, settling=settling),
         )
         if not settling:
             self.drag = drag_rates(scene)
-        self.forces = RestForces(scene, disks)
+        self.forces = RestForces(scene, disks, self.walls)
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self._time_step, self._start, self._settling = time_step, start, settling
@@ -116,8 +118,7 @@ class DiskSystem(RecordedDisks):
         self._begin_at_rest()
         if self._bearing is not None:
             self._bearing.rest_at(state.datum)
-        if steady.any():
-            self.steady = steady.copy()
+        self.steady = self._kept(steady)
         if law.has_history:
             self.switch(state, fresh=not law.goes_on)
         else:
@@ -185,10 +186,7 @@ class DiskSystem(RecordedDisks):
             self.disks.adopt(state.displacement - self._time_step * state.velocity)  # its first push adds this step
         if self.near_ties is not None:
             self.near_ties.begin(self.contacts["body"])
-        if self.balance is not None:
-            self.steady = self.load + self.balance.force
-        else:  # none where all are zero, as under the first law: kernels then read no array of them
-            self.steady = self.load.copy() if self.load.any() else np.zeros((3, 0))
+        self.steady = self._kept(self.load) if self.balance is None else self.load + self.balance.force
         self._set_balance_in_use()
         if before is not None and self.turning is not None:
             # the next step counts the work of rotation from half a step earlier, when forces did not rotate yet
@@ -301,7 +299,22 @@ class DiskSystem(RecordedDisks):
         follows = self.uses_history and self.disks.geometry_follows
         self.turning = balance.followers if balance is not None and follows else None
 
+    def _kept(self, steady: np.ndarray) -> np.ndarray:
+        """Steady forces (3, n); none where all are zero and there are no walls: kernels then read no array of them."""
+        return steady.copy() if steady.any() or self.walls is not None else np.zeros((3, 0))
+
     def _potential(self, state: State) -> float:
         """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
         steady = float(np.sum(self.load * (state.displacement - state.datum)))
         return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)
+
+
+def _walls(
+    scene: DiskBody, time_step: float, disks: DiskParts, start: Start | None, *, settling: bool
+) -> WallPart | None:
+    """The walls of a scene with the contacts of its start; None without any."""
+    if not scene.case.wall:
+        return None
+    displacement = np.zeros((3, scene.count)) if start is None else start.displacement
+    touching = None if start is None else start.touching
+    return WallPart(scene, time_step, disks.parts[-1].fastest, displacement, touching, stand=settling)

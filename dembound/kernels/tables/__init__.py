@@ -1,7 +1,7 @@
 """Bundles of arrays, the arguments of kernels."""
 
 from dembound.kernels.tables.bars import BarLayers, Softening
-from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, NeighbourTable, PairRows
+from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, NeighbourTable, PairRows, Unloading, Walls
 from dembound.kernels.tables.grid import (
     ALONG,
     Absorber,
@@ -81,6 +81,8 @@ __all__ = [
     "Softening",
     "Supports",
     "TieMemories",
+    "Unloading",
     "WallTies",
+    "Walls",
     "WatchedLinks",
 ]

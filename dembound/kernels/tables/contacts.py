@@ -138,3 +138,53 @@ class Cells(NamedTuple):
     divisions: np.ndarray
     wraps: np.ndarray
     reach: float
+
+
+class Walls(NamedTuple):
+    """Rigid walls and the m disks listed near them, in ascending slots; see kernels/walls.py.
+
+    slot, radius, mass, kratio : (m,) slot, m, kg, and normal over shear stiffness of a contact of each disk; place
+    (2, m) m, its centre before displacements; spring (m,) N/m, normal stiffness where walls give none. bound :
+    (chunks + 1,) first disk of each chunk, which slots alone decide. start : (m + 1,) rows of the segments near each
+    disk in segment (e,). ends (s, 4) m, x and y of both ends of each segment; wall (s,) of the W walls.
+    given (W, 2) N/m, normal and shear stiffness, 0 where absent; friction (W,); dashpot (W,), 2β. path : (rows, W, 2)
+    m, displacement of each wall before each step, of which the last two rows are equal. fastest : (chunks,) m/s of
+    disks after a step.
+    kept : (m, MOST, KEPT) contacts of the last step. force (3, m), load (3, m), lost (chunks, 3), total (chunks, W, 2)
+    : work space. record : (R, W, 4) displacement (m) of each wall and force (N) on it in the last R steps. moved :
+    (2,) J that walls have supplied as they move, as `Log.work`. way : (2,) m that disks and walls may have come since
+    the list was made, and the limit; step (1,), that of the forces.
+    """
+
+    slot: np.ndarray
+    radius: np.ndarray
+    mass: np.ndarray
+    kratio: np.ndarray
+    place: np.ndarray
+    spring: np.ndarray
+    bound: np.ndarray
+    start: np.ndarray
+    segment: np.ndarray
+    ends: np.ndarray
+    wall: np.ndarray
+    given: np.ndarray
+    friction: np.ndarray
+    dashpot: np.ndarray
+    path: np.ndarray
+    fastest: np.ndarray
+    kept: np.ndarray
+    force: np.ndarray
+    load: np.ndarray
+    lost: np.ndarray
+    total: np.ndarray
+    record: np.ndarray
+    moved: np.ndarray
+    way: np.ndarray
+    step: np.ndarray
+
+
+class Unloading(NamedTuple):
+    """Steady loads (3, m) of the disks in these slots (m,), which are restored once walls have pushed them."""
+
+    slot: np.ndarray
+    load: np.ndarray

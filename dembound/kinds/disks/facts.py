@@ -25,6 +25,7 @@ from dembound.kinds.disks.ground import ground_facts, particles_per
 from dembound.kinds.disks.incident_wave import incident_facts
 from dembound.kinds.disks.slopes import slope_facts
 from dembound.kinds.disks.summary import describe_side
+from dembound.kinds.disks.walls import wall_facts
 from dembound.kinds.disks.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
@@ -53,6 +54,7 @@ def disk_facts(scene: DiskScene) -> Entries:
         yield from incident_facts(scene)
     for side in scene.edges:
         yield f"{side} side", _side_fact(scene, side)
+    yield from wall_facts(scene)
     yield from _load_facts(scene)
     yield from _monitor_facts(scene)
     yield from _tension_facts(scene)

@@ -30,7 +30,7 @@ from dembound.formulas.disks.entry import all_late_by
 from dembound.kernels.contacts import UPDATED
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import with_incident_waves
-from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh
+from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh, wall_mesh
 from dembound.kinds.disks.summary import (
     asked_stress,
     describe_static,
@@ -38,6 +38,7 @@ from dembound.kinds.disks.summary import (
     summarise_disks,
     warnings_after_disks,
 )
+from dembound.kinds.disks.walls import require_clear
 from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
 from dembound.motion.memory import Storage
@@ -66,13 +67,15 @@ class Disks(Kind[DiskCase, DiskScene]):
     def build(self, case: DiskCase) -> DiskScene:
         """The scene of a case that is to run.
 
-        Raises the errors for loads without particles, a singular material, and too large zones without broken bonds;
+        Raises the errors for loads without particles, a singular material, walls that cut disks, and too large zones
+        without broken bonds;
         strips and columns that are built from parts of a case may be smaller.
         """
         scene = with_incident_waves(build(case))
         for each in filter(None, (scene.before, scene)):
             if each.has_history:  # under other laws zones matter to load factors only
                 require_room(case, each.intact_zones, each.disk_count - each.column_count)
+        require_clear(scene)
         _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
 
@@ -186,10 +189,12 @@ class Disks(Kind[DiskCase, DiskScene]):
         return disk_outcome(summary)
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
-        """One vertex per disk, one line per contact if the record has contacts, and the cells of a continuum."""
+        """One vertex per disk, one line per contact if the record has contacts, walls, and the cells of a continuum."""
         meshes = {"particles": disk_mesh(particles, snapshot, cracks)}
         if "contacts/particles" in snapshot:
             meshes["contacts"] = contact_mesh(particles, snapshot)
+        if any(name.startswith("walls/") for name in snapshot):
+            meshes["walls"] = wall_mesh(snapshot)
         if "continuum/position" in particles:
             meshes["continuum"] = continuum_mesh(particles, snapshot)
         return meshes

@@ -38,6 +38,12 @@ shown.UseScaleFunction = 0
 shown.GaussianRadius = 1.0
 all_shown = [shown]
 
+if "walls" in files:
+    walls = Show(OpenDataFile(str(files["walls"])), view)
+    ColorBy(walls, None)
+    walls.DiffuseColor = [0.0, 0.0, 0.0]
+    walls.LineWidth = 2.0
+
 if "continuum" in files:
     cells = Show(OpenDataFile(str(files["continuum"])), view)
     cells.SetRepresentationType("Surface")
@@ -104,6 +110,18 @@ def contact_mesh(particles: Arrays, snapshot: Arrays) -> meshio.Mesh:
     lines = np.arange(2 * len(pairs), dtype=np.int32).reshape(-1, 2)
     points = np.stack([begin, end], axis=1).reshape(-1, 3)
     return meshio.Mesh(points, [("line", lines)], cell_data={name: [values] for name, values in shown(data).items()})
+
+
+def wall_mesh(snapshot: Arrays) -> meshio.Mesh:
+    """The walls of one snapshot as lines, with the number of the wall of each."""
+    import meshio
+
+    walls = [points for name, points in snapshot.items() if name.startswith("walls/")]
+    counts = np.array([len(points) for points in walls])
+    first = np.delete(np.arange(counts.sum()), np.cumsum(counts) - 1)
+    number = np.repeat(np.arange(len(walls), dtype=np.int32), counts - 1)
+    lines = np.stack([first, first + 1], axis=1).astype(np.int32)
+    return meshio.Mesh(in_space(np.concatenate(walls)), [("line", lines)], cell_data={"wall": [number]})
 
 
 def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:

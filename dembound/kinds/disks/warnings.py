@@ -15,6 +15,7 @@ from dembound.kinds.disks.facts import intact_warnings
 from dembound.kinds.disks.micro_macro import Own, materials_of
 from dembound.kinds.disks.side_warnings import load_warnings, side_warnings, spring_warnings
 from dembound.kinds.disks.slopes import slope_warnings
+from dembound.kinds.disks.walls import wall_warnings
 from dembound.kinds.disks.wave_warnings import wave_warnings
 from dembound.meanings import MEANINGS
 from dembound.words import percent, with_unit
@@ -57,6 +58,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
         *slope_warnings(scene),
+        *wall_warnings(scene),
         *intact_warnings(scene),
         *spring_warnings(scene),
         *load_warnings(scene),

@@ -102,7 +102,7 @@ static | in_situ | write stress = [sxx, syy, sxy]
  | reservoir | there is none: no water stands on the ground, a dam is empty
 material | pore_pressure | there is none: the ground is dry
 static | pore pressure | there is none: the ground is dry
- | walls | [boundary.bottom] and other sides have a type
+ | walls | [[wall]] has points and a velocity
 bar | dx | write spacing, m
 """
 

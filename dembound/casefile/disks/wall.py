@@ -1,0 +1,141 @@
+"""The ``[[wall]]`` tables: rigid lines that disks touch."""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+from pydantic import PrivateAttr, ValidationInfo, model_validator
+
+from dembound.casefile.disks.surface import points_in_file
+from dembound.casefile.disks.targets import with_history
+from dembound.casefile.messages import numbered
+from dembound.casefile.types import LAWS
+from dembound.holes.polygon import Points
+from dembound.table import FileName, Table, quantity
+
+MOST_POINTS = 100_000
+"""Largest number of points of a wall."""
+
+Velocity = tuple[float, float]
+
+
+class Wall(Table):
+    """A rigid line that the body's disks touch from both sides, also beyond the box of disks: PFC's wall.
+
+    Disks are pushed away, rub with Coulomb's friction, and never stick. The wall does not move by itself: with a
+    velocity or waves it does as given, else it stands. In a static stage it stands.
+
+    Notes
+    -----
+    Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
+    """
+
+    name: FileName = quantity(..., unit="1", help="name of the wall in messages and results")
+    points: Points | str = quantity(
+        ...,
+        unit="m",
+        means="place",
+        help="points [[x, y], …] joined by straight lines, or a text file of x and y in m, relative to the folder of "
+        "the case; the first point again at the end closes it",
+    )
+    fric: float = quantity(
+        0.0, unit="1", means="friction coefficient", help="friction coefficient between disks and wall", ge=0.0
+    )
+    kn: float | None = quantity(
+        None,
+        unit="N/m",
+        help="normal stiffness of a contact; absent: 2·emod of the material, that of the disk alone",
+        gt=0.0,
+    )
+    ks: float | None = quantity(
+        None, unit="N/m", help="shear stiffness of a contact; absent: kn over the material's kratio", gt=0.0
+    )
+    dp_nratio: float = quantity(
+        0.0,
+        unit="1",
+        means="share",
+        help="normal dashpot of a contact over the critical one, of the disk's mass; it does not pull",
+        ge=0.0,
+        le=1.0,
+    )
+    velocity: Velocity | None = quantity(None, unit="m/s", means="velocity", help="constant velocity [vx, vy]")
+    wave_x: str | None = quantity(None, unit="1", help="name of the wave of its velocity along x")
+    wave_y: str | None = quantity(None, unit="1", help="name of the wave of its velocity along y")
+    until: float | None = quantity(
+        None, unit="s", help="time at which it stops; absent: it moves to the end of the run", gt=0.0
+    )
+
+    _line: Points = PrivateAttr(default=())
+    _text: str = PrivateAttr(default="")
+
+    @model_validator(mode="after")
+    def _is_a_line(self, info: ValidationInfo) -> "Wall":
+        if isinstance(self.points, str):
+            try:
+                self._line, self._text = points_in_file(self.points, info.context or {})
+            except ValueError as error:
+                raise ValueError(str(error).replace("surface:", "points:", 1)) from None
+        else:
+            self._line = self.points
+        problems = list(self._problems())
+        if problems:
+            raise ValueError("\n".join(problems))
+        return self
+
+    def _problems(self) -> Iterator[str]:
+        """Mistakes in the points and the motion."""
+        if not 2 <= len(self._line) <= MOST_POINTS:
+            yield f"points: has {len(self._line):,} points, must have 2 to {MOST_POINTS:,}"
+        for number, (one, two) in enumerate(pairwise(self._line), start=1):
+            if one == two:
+                yield f"points: has point {number} twice in a row, at ({one[0]:.6g}, {one[1]:.6g}) m; leave one out"
+        for key in ("wave_x", "wave_y"):
+            if self.velocity is not None and getattr(self, key) is not None:
+                yield f"{key}: is not allowed together with velocity"
+        if self.until is not None and not self.moves:
+            yield "until: is of a wall that moves; give velocity, wave_x or wave_y"
+
+    @property
+    def line(self) -> Points:
+        """Its points, m."""
+        return self._line
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Text of the file of its points, by its path, if it has one."""
+        return {self.points: self._text} if isinstance(self.points, str) else {}
+
+    @property
+    def waves(self) -> dict[int, str]:
+        """Names of the waves of its velocity, by axis."""
+        return {axis: name for axis, name in enumerate((self.wave_x, self.wave_y)) if name is not None}
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves in the run."""
+        return self.velocity is not None or bool(self.waves)
+
+
+def wall_problems(tables: Mapping[str, Any]) -> Iterator[str]:
+    """What walls do not go with; a table that is invalid on its own is None."""
+    material, layers, output = tables["material"], tables["layer"], tables["output"]
+    if tables["wall"] and output and output.estimate:
+        yield "output.estimate: is true, but errors beside walls are not known; leave [[wall]] or the estimate out"
+    for place, wall in numbered("wall", tables["wall"]):
+        if material and not LAWS[material.law].has_history:
+            yield (
+                f'{place}: material.law is "{material.law}", under which contacts never open, so that disks cannot '
+                f"leave a wall; give law = {with_history()}"
+            )
+        for side, table in tables["boundary"].items():
+            if table and table.is_periodic and side in ("left", "bottom"):
+                yield f'{place}: boundary.{side} is "periodic", and a wall is not repeated; leave one of them out'
+        if material and wall.kn is None and not _gives_stiffness(material, layers):
+            yield f"{place}.kn: is missing; the contacts of material have no emod from which it follows"
+
+
+def _gives_stiffness(material: Any, layers: Any) -> bool:
+    """Whether contacts have a linear stiffness, from which that of a wall follows."""
+    law = LAWS[material.law]
+    zero = any(each.emod == 0.0 for each in (material, *filter(None, layers)))
+    return law.starts_elastic and not zero and material.contact_share > 0.0

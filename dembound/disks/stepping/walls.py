@@ -1,0 +1,282 @@
+"""The walls of a scene as a part without nodes of its own, and the disks near them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.casefile.disks.wall import Wall
+from dembound.disks.body import DiskBody
+from dembound.kernels import walls as kernel
+from dembound.kernels.common import CHUNKS, LIST_ENDS
+from dembound.kernels.tables import Unloading, Walls
+from dembound.motion.part import NO_CRACKS, Cracks, Part
+from dembound.motion.state import Arrays, State
+from dembound.waves.wave import Wave
+
+SKIN = 1.0
+"""Distance from walls, in mean diameters, up to which disks are listed; others are only looked at after as much motion.
+
+A list takes as long as a few steps, and disks in it some 10 ns each."""
+
+ROWS = 1024
+"""Steps of which forces on walls are kept for the record; the loop returns within a quarter of them."""
+
+MOST_RANGES = 4096
+"""Largest number of ranges along an axis by which segments near a disk are found."""
+
+
+class Touching(NamedTuple):
+    """Contacts of disks with walls: disk (m,) ascending, and kept (m, MOST, KEPT), see kernels/walls.py."""
+
+    disk: np.ndarray
+    kept: np.ndarray
+
+
+def path_of(walls: Sequence[Wall], waves: dict[str, Wave], steps: int, time_step: float) -> np.ndarray:
+    """Displacements (rows, w, 2) m of walls before each step (s), of which the last two are equal.
+
+    Velocities are those in the middle of steps.
+    """
+    if not any(wall.moves for wall in walls):
+        return np.zeros((1, len(walls), 2))
+    times = (np.arange(steps) + 0.5) * time_step
+    velocity = np.zeros((steps + 1, len(walls), 2))
+    for number, wall in enumerate(walls):
+        own = velocity[:-1, number]
+        if wall.velocity is not None:
+            own[:] = wall.velocity
+        for axis, name in wall.waves.items():
+            own[:, axis] = waves[name].velocity(times)
+        if wall.until is not None:
+            own[times > wall.until] = 0.0
+    return np.concatenate([np.zeros((1, len(walls), 2)), time_step * np.cumsum(velocity, axis=0)])
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """The segments of all walls: ends (s, 4) m, x and y of both, and the number (s,) of the wall of each."""
+
+    ends: np.ndarray
+    wall: np.ndarray
+
+    @classmethod
+    def of(cls, walls: Sequence[Wall]) -> Lines:
+        """The segments of walls, in their order."""
+        lines = [np.array(wall.line) for wall in walls]
+        ends = np.concatenate([np.hstack([line[:-1], line[1:]]) for line in lines])
+        return cls(ends, np.repeat(np.arange(len(lines)), [len(line) - 1 for line in lines]))
+
+    def ranges(self, shift: np.ndarray, reach: float) -> tuple[int, float, float, np.ndarray, np.ndarray]:
+        """Ranges along the longer axis of all segments, shifted by (s, 2) m, and those that reach into each.
+
+        Axis, low end and width (m), and start (b + 1,) of the members of each in member (e,), ascending. reach : m, of
+        a segment beyond its ends.
+        """
+        ends = self.ends.reshape(-1, 2, 2) + shift[:, None]
+        axis = int(np.ptp(ends, axis=(0, 1)).argmax())
+        low, high = ends[..., axis].min(axis=1) - reach, ends[..., axis].max(axis=1) + reach
+        count = int(np.clip(len(ends), 1, MOST_RANGES))
+        begin, width = float(low.min()), float(high.max() - low.min()) / count
+        first, last = ((np.floor((each - begin) / width)).astype(np.int64) for each in (low, high))
+        last = np.minimum(last, count - 1)
+        each = last - first + 1
+        member = np.repeat(np.arange(len(ends)), each)
+        range_of = np.repeat(first, each) + np.arange(len(member)) - np.repeat(np.cumsum(each) - each, each)
+        order = np.argsort(range_of, kind="stable")
+        start = np.concatenate([[0], np.cumsum(np.bincount(range_of, minlength=count))])
+        return axis, begin, width, start, member[order]
+
+
+class WallPart(Part):
+    """The walls that the disks of a body touch.
+
+    Parameters
+    ----------
+    scene : the scene. time_step : s. fastest : (chunks,) m/s of the body's disks after a step, as its law notes them.
+    displacement : (3, n) m and rad, at the start. touching : contacts of an earlier stage; None: there are none.
+    stand : whether walls stand still, as in a static stage.
+    """
+
+    name = "walls"
+    nodes = slice(0, 0)
+    law_name = "walls"
+
+    def __init__(
+        self,
+        scene: DiskBody,
+        time_step: float,
+        fastest: np.ndarray,
+        displacement: np.ndarray,
+        touching: Touching | None = None,
+        *,
+        stand: bool,
+    ) -> None:
+        walls, case = scene.case.wall, scene.case
+        self._scene, self._time_step, self._fastest = scene, time_step, fastest
+        self._lines = Lines.of(walls)
+        steps = 1 if stand else int(np.ceil(case.run.duration / time_step)) + 2
+        self._path = np.zeros((1, len(walls), 2)) if stand else path_of(walls, dict(case.wave), steps, time_step)
+        self._given = np.array([[wall.kn or 0.0, wall.ks or 0.0] for wall in walls])
+        self._friction = np.array([wall.fric for wall in walls])
+        self._dashpot = np.array([2.0 * wall.dp_nratio for wall in walls])
+        self._record = np.zeros((ROWS, len(walls), 4))
+        self._moved, self._way, self._step = np.zeros(2), np.zeros(2), np.zeros(1, dtype=np.int64)
+        self._lost, self._total = np.zeros((CHUNKS, kernel.LOST)), np.zeros((CHUNKS, len(walls), 2))
+        known = touching or Touching(np.zeros(0, dtype=np.int64), np.zeros((0, kernel.MOST, kernel.KEPT)))
+        slots = scene.layout.slot[known.disk]
+        order = np.argsort(slots)
+        self._list(scene.layout.spread(displacement), 0, slots[order], known.kept[order])
+
+    @cached_property
+    def _disks(self) -> dict[str, np.ndarray]:
+        """Slot, place, radius, mass, stiffness and kratio of all disks of the body, in ascending slots."""
+        scene, own = self._scene, self._scene.parts["body"]
+        slot = scene.layout.slot[own]
+        order = np.argsort(slot)
+        disks = np.arange(own.start, own.stop)[order]
+        place = scene.assembly.positions[disks]
+        moduli = [each.moduli for each in scene.ground.materials]
+        layer = scene.ground.layer_of(place)
+        kn, kratio = (np.array(each)[layer] for each in ([2.0 * m.emod for m in moduli], [m.kratio for m in moduli]))
+        return {
+            "slot": slot[order],
+            "place": np.ascontiguousarray(place.T),
+            "radius": scene.assembly.radii[disks],
+            "mass": scene.mass[disks],
+            "spring": kn,
+            "kratio": kratio,
+        }
+
+    def _list(self, u: np.ndarray, step: int, slots: np.ndarray, kept: np.ndarray) -> None:
+        """List the disks near walls before a step, at displacements (3, slots).
+
+        kept : (m, …) contacts of the disks in slots (m,), ascending.
+        """
+        disks, lines, nothing = self._disks, self._lines, np.zeros(0, dtype=np.int64)
+        shift = self.place(step)[lines.wall]
+        reach = SKIN * self._scene.ground.brick.mean_diameter
+        bins = lines.ranges(shift, reach + float(disks["radius"].max()))
+        counts = np.zeros(len(disks["slot"]), dtype=np.int64)
+        columns = (u, disks["slot"], disks["place"], disks["radius"], reach, bins, lines.ends, shift, counts)
+        kernel.near_disks(*columns, nothing)
+        segment = np.zeros(int(counts.sum()), dtype=np.int64)
+        if segment.size:
+            kernel.near_disks(*columns, segment)
+        near = np.flatnonzero(counts)
+        own = np.zeros((len(near), kernel.MOST, kernel.KEPT))
+        there = np.isin(slots, disks["slot"][near])
+        own[np.searchsorted(disks["slot"][near], slots[there])] = kept[there]
+        self._way[:] = 0.0, reach
+        self._walls = self._listed(near, np.concatenate([[0], np.cumsum(counts[near])]), segment, own)
+
+    def _listed(self, near: np.ndarray, start: np.ndarray, segment: np.ndarray, kept: np.ndarray) -> Walls:
+        """The arrays for the kernels with a list of the disks (m,), by number among those of the body."""
+        of = {name: np.ascontiguousarray(values[..., near]) for name, values in self._disks.items()}
+        edges = np.arange(CHUNKS + 1) * self._scene.layout.count // CHUNKS
+        return Walls(
+            **of,
+            bound=np.searchsorted(of["slot"], edges).astype(np.int64),
+            start=start,
+            segment=segment,
+            ends=self._lines.ends,
+            wall=self._lines.wall,
+            given=self._given,
+            friction=self._friction,
+            dashpot=self._dashpot,
+            path=self._path,
+            fastest=self._fastest,
+            kept=kept,
+            force=np.zeros((3, len(near))),
+            load=np.zeros((3, len(near))),
+            lost=self._lost,
+            total=self._total,
+            record=self._record,
+            moved=self._moved,
+            way=self._way,
+            step=self._step,
+        )
+
+    def law(self) -> Walls:
+        """The walls with the disks listed near them; they are the first law, as others move disks by their forces."""
+        return self._walls
+
+    @property
+    def unloading(self) -> Unloading:
+        """The law that takes their forces off steady loads again; it must be the last one."""
+        return Unloading(self._walls.slot, self._walls.load)
+
+    def react(self, why: int, steps: int, state: State) -> None:
+        """List disks anew once they may have come from outside the list."""
+        if why == LIST_ENDS and self._way[0] >= self._way[1]:
+            self._list(state.u, state.step, self._walls.slot, self._walls.kept)
+
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in the springs of contacts at the last forces, and none in bonds."""
+        return float(kernel.energy_stored(self._walls)), 0.0
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """None: walls have no bonds."""
+        return NO_CRACKS
+
+    @property
+    def supplied(self) -> float:
+        """Work (J) of the walls that move, up to the last whole step."""
+        return float(self._moved[1])
+
+    @property
+    def touching(self) -> Touching:
+        """The contacts of the last step, by disk."""
+        touch = self._walls.kept[:, 0, kernel.PUSH] > 0.0
+        disk = self._scene.layout.node[self._walls.slot[touch]]
+        order = np.argsort(disk)
+        return Touching(disk[order], self._walls.kept[touch][order])
+
+    def samples(self, steps: np.ndarray) -> np.ndarray:
+        """Displacement (m) and force (N), along x and y, of and on each wall (k, w, 4) in some of the last steps."""
+        return self._record[steps % ROWS]
+
+    def place(self, step: int) -> np.ndarray:
+        """Displacement (w, 2) m of each wall before a step."""
+        return self._path[min(step, len(self._path) - 1)]
+
+    def push(self, displacement: np.ndarray) -> None:
+        """Compute the forces of walls on disks at rest at displacements (3, n)."""
+        u = self._scene.layout.spread(displacement)
+        kernel.push(self._walls, u, u, np.zeros_like(u), 0, 0.0, np.zeros((2, 7)))
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """Sizes (m,) N of the last forces of walls on the disks near them."""
+        found: np.ndarray = np.hypot(*self._walls.force[:2])
+        return found
+
+    def add_forces(self, force: np.ndarray) -> None:
+        """Add the last forces of walls on disks to those of all nodes, force (3, n)."""
+        force[:, self._scene.layout.node[self._walls.slot]] += self._walls.force
+
+    def saved_arrays(self) -> Arrays:
+        """The list of disks with their contacts, for a checkpoint."""
+        walls = self._walls
+        return {
+            "slot": walls.slot,
+            "start": walls.start,
+            "segment": walls.segment,
+            "kept": walls.kept,
+            "force": walls.force,
+            "moved": self._moved,
+            "way": self._way,
+            "step": self._step,
+        }
+
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        for name in ("moved", "way", "step"):
+            getattr(self, f"_{name}")[...] = saved[name]
+        near = np.searchsorted(self._disks["slot"], saved["slot"])
+        self._walls = self._listed(near, *(saved[name].copy() for name in ("start", "segment", "kept")))
+        self._walls.force[...] = saved["force"]
