@@ -268,6 +268,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         np.zeros((2, 0)),
         np.zeros((2, 0)),
         np.zeros((0, 0)),
+        np.zeros(0),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),
         np.linspace(0, b, CHUNKS + 1).astype(np.int64),

@@ -49,6 +49,7 @@ from dembound.kernels.contacts import (
     closing_work,
     push_each,
     resistance,
+    rolled_on,
 )
 from dembound.kernels.lane_step import next_place, place_of
 from dembound.kernels.pair_law import (
@@ -57,6 +58,7 @@ from dembound.kernels.pair_law import (
     breaks,
     most_shear,
     normal,
+    rolls,
     rubbed,
     shear_of,
     slip_after,
@@ -153,6 +155,19 @@ def _resist(law, at, overlap, opening, sliding, step, exists, contacts, limits, 
 
 
 @njit(**INLINED)
+def _roll(law, at, push, step, loose, v, contacts, limits, taken):
+    """Moments of rolling contacts, see `contacts.rolled_on`; loose : byte of those without bonds."""
+    (k, _, q, kind, _), (c, i, j) = law, at
+    turned = step * (load_of(v, U(2), j) - load_of(v, U(2), i))
+    angle, moment, loss = rolled_on(limits, k, q, kind, push, load(contacts.rolled, c), turned)
+    store_some(contacts.rolled, c, angle, loose)
+    loss = choose(bits(loose), loss, 0.0)
+    add_to(taken, 0, larger(loss, 0.0))
+    add_to(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
+    return choose(bits(loose), moment, 0.0)
+
+
+@njit(**INLINED)
 def reference(law, at, way, u):
     """Arms, stretch and shear in the geometry of the start, whose normals are `way`."""
     (k, began, q, _, _), (_, i, j), (nx, ny) = law, at, way
@@ -227,6 +242,10 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
             N, S = _contact(law, at, overlap, shear, opening, sliding, step, now, contacts, limits, taken)
             pull -= N
             side += S
+            if rolls(limits):
+                loose = np.uint8(now & ~intact)
+                if loose != 0:
+                    moment += _roll(law, at, N, step, loose, v, contacts, limits, taken)
         if follows:
             gone = np.uint8(byte_of(at_most(overlap, 0.0)) & ~intact & now)
             if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair

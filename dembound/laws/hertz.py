@@ -114,7 +114,7 @@ class Hertz(Law):
         """Constants (b, 2) of pairs, in the columns after their place."""
         return np.column_stack([np.where(acts, each, 0.0) for each in _stiff(moduli, radius_i, radius_j)])
 
-    def without_limits(self, geometry: int) -> Friction:
+    def without_limits(self, geometry: int, *, rolls: bool = False) -> Friction:
         """Limits that no contact reaches."""
         return Friction(0.0, geometry)
 

@@ -97,7 +97,12 @@ class DiskCase(Case):
     @property
     def begins_elastic(self) -> bool:
         """Whether the elastic law serves first in place of a history-dependent one."""
-        return self.material.begins_elastic and not self.relaxes
+        return self.material.begins_elastic and not self.relaxes and not self.rolls
+
+    @property
+    def rolls(self) -> bool:
+        """Whether contacts without bonds resist rolling from the start."""
+        return any(material.rolls for material in self.materials)
 
     @property
     def joints(self) -> tuple[float, ...]:

@@ -30,6 +30,8 @@ def never_elastic_again(case: DiskCase) -> str:
         return f'contacts under material.law = "{material.law}" are stiffer the more they overlap'
     if material.has_dashpots:
         return "contacts have dashpots"
+    if case.rolls:
+        return "contacts without bonds resist rolling"
     if case.relaxes:
         return "bonds have relaxation arms, by which their ground is damped"
     if not material.elastic_start:
@@ -110,7 +112,7 @@ def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.
     built_in = case.material.locked_in is not None or case.begins_stressed
     through = bool(disks.seams) and built_in and not settling
     slides = scene.at_rest is not None and scene.at_rest.slides
-    never = not scene.ground.law.starts_elastic
+    never = not scene.ground.law.starts_elastic or case.rolls
     at_once = through or slides or never or not (settling or case.begins_elastic)
     return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
 

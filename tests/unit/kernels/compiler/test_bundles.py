@@ -16,7 +16,7 @@ CONTACTS = Contacts(
     constants=np.arange(24.0).reshape(2, 12), began=0.0, state=np.array([1, 200], np.uint8),
     shear=np.array([0.1, -0.2]), slip=np.zeros(2), closed=np.zeros(2, np.uint8), cracked=np.array([-1, 7]),
     place=np.zeros((2, 2)), kept=np.zeros(2, np.uint8), force=np.arange(8.0).reshape(4, 2),
-    viscosity=np.zeros((2, 0)), drag=np.zeros((2, 0)), lag=np.zeros((0, 0)), bound=np.arange(3),
+    viscosity=np.zeros((2, 0)), drag=np.zeros((2, 0)), lag=np.zeros((0, 0)), rolled=np.zeros(0), bound=np.arange(3),
     start=np.zeros(3, np.uint32), end=np.zeros(0, np.uint32),
 )  # fmt: skip
 CELLS = Cells(np.arange(3), np.arange(2), np.array([2, 1]), np.array([False, True]), 0.25)
