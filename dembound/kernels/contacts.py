@@ -14,17 +14,15 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, INLINED, U
-from dembound.kernels.compiler.lanes import at_most, choose, larger, magnitude, with_sign
+from dembound.kernels.compiler.lanes import at_most, choose, larger
 from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.pair_law import (
     bond,
     breaks,
-    most_moment,
     most_shear,
     normal,
-    rolling,
     rolls,
     rubbed,
     shear_of,
@@ -35,6 +33,7 @@ from dembound.kernels.pair_law import (
     viscosity,
 )
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
+from dembound.kernels.rolling import roll_pair
 from dembound.pairwise import P
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -87,23 +86,6 @@ def closing_work(limits, constants, k, before, now, had_closed, push):
 
 
 @njit(**INLINED)
-def rolled_on(limits, constants, k, kind, push, before, turned):
-    """Rotation that has not slid, moment (N·m) and energy (J) taken of contacts after a step; numbers or lanes.
-
-    push : N; before : rad, the rotation that had not slid a step earlier; turned : rad, rotation of the second disk
-    relative to the first in the step. The moment of whole steps does the work ½(M⁻ + M) turned, of which the spring
-    stores the change of ½k_r times the square of the rotation. Of an open contact, which does not push, nothing is left.
-    """
-    stiff, radius = rolling(limits, constants, k)
-    most, angle = most_moment(limits, kind, radius, push), before + turned
-    moment = stiff * angle
-    sticks = at_most(magnitude(moment), most)
-    moment = choose(sticks, moment, with_sign(most, moment))
-    angle = choose(sticks, angle, moment / stiff)
-    return angle, moment, 0.5 * stiff * (before + angle) * (before + turned - angle)
-
-
-@njit(**INLINED)
 def resistance(limits, constants, k, overlap, viscosities, opening, sliding):
     """Forces (N) of the dashpots of contacts, with which they push and rub; numbers or lanes.
 
@@ -126,16 +108,6 @@ def _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost):
     lost[4] += 0.5 * step * ((drag[U(1), c] + rub) * sliding - (drag[U(0), c] + push) * opening)
     drag[U(0), c], drag[U(1), c] = push, rub
     return push, rub
-
-
-@njit(**FAST, forceinline=True)  # see `_resist`
-def _roll(c, k, push, turned, contacts, limits, lost):
-    """Moment of the rolling contact c, see `rolled_on`; lost (5,) is advanced by what it takes."""
-    before = contacts.rolled[c]
-    angle, moment, taken = rolled_on(limits, contacts.constants, k, k, push, before, turned)
-    contacts.rolled[c] = angle
-    lost[0 if taken > 0.0 else 2] += taken
-    return moment
 
 
 @njit(**FAST, forceinline=True)
@@ -214,7 +186,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             lost[1 if broken > 0.0 else 2] += broken
             lost[3] += 1.0
     elif rolls(limits) and geometry != REFERENCE:
-        moment = _roll(c, k, N, step * (v[U(2), j] - v[U(2), i]), contacts, limits, lost)
+        moment = roll_pair(limits, c, k, N, step * (v[U(2), j] - v[U(2), i]), contacts, lost)
     if contacts.viscosity.shape[1] > 0:
         sliding = slide(i, j, k, nx, ny, distance, v, constants)
         push, rub = _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost)

@@ -19,7 +19,6 @@ from dembound.kernels.compiler.lane_access import (
     load_of,
     note_some,
     nth,
-    store,
     store_some,
     store_some_of,
     where_equal,
@@ -49,9 +48,9 @@ from dembound.kernels.contacts import (
     closing_work,
     push_each,
     resistance,
-    rolled_on,
 )
 from dembound.kernels.lane_step import next_place, place_of
+from dembound.kernels.lane_sums import TAKEN, add_to, begin_sums, end_sums
 from dembound.kernels.pair_law import (
     acts,
     bond,
@@ -65,13 +64,11 @@ from dembound.kernels.pair_law import (
     slip_at,
     slips_by_overlap,
 )
+from dembound.kernels.rolling import roll_eight
 from dembound.pairwise import P
 
 ALL = np.uint8(2**LANES - 1)
 """The byte of eight pairs."""
-
-TAKEN = 3 * LANES
-"""Numbers in `taken`."""
 
 _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY_BREAK, CLOSES, CLOSED))
 
@@ -80,12 +77,6 @@ _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY
 def in_lanes(numbers):
     """A number in all lanes, or lanes themselves."""
     return splat(0.0) + numbers
-
-
-@njit(**INLINED)
-def add_to(sums, first, values):
-    """Add eight numbers to those in an array (n,) from index `first` on."""
-    store(sums, U(first), load(sums, U(first)) + values)
 
 
 @njit(**INLINED)
@@ -152,19 +143,6 @@ def _resist(law, at, overlap, opening, sliding, step, exists, contacts, limits, 
     store_some_of(drag, U(0), c, push, exists)
     store_some_of(drag, U(1), c, rub, exists)
     return push, rub
-
-
-@njit(**INLINED)
-def _roll(law, at, push, step, loose, v, contacts, limits, taken):
-    """Moments of rolling contacts, see `contacts.rolled_on`; loose : byte of those without bonds."""
-    (k, _, q, kind, _), (c, i, j) = law, at
-    turned = step * (load_of(v, U(2), j) - load_of(v, U(2), i))
-    angle, moment, loss = rolled_on(limits, k, q, kind, push, load(contacts.rolled, c), turned)
-    store_some(contacts.rolled, c, angle, loose)
-    loss = choose(bits(loose), loss, 0.0)
-    add_to(taken, 0, larger(loss, 0.0))
-    add_to(taken, LANES, choose(at_most(loss, 0.0), loss, 0.0))
-    return choose(bits(loose), moment, 0.0)
 
 
 @njit(**INLINED)
@@ -245,7 +223,7 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
             if rolls(limits):
                 loose = np.uint8(now & ~intact)
                 if loose != 0:
-                    moment += _roll(law, at, N, step, loose, v, contacts, limits, taken)
+                    moment += roll_eight(limits, law, at, N, step, loose, v, contacts, taken)
         if follows:
             gone = np.uint8(byte_of(at_most(overlap, 0.0)) & ~intact & now)
             if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
@@ -261,24 +239,6 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
         store_some_of(force, U(1), c, ny * pull + nx * side, now)
         store_some_of(force, U(2), c, arm_i * side + moment, now)
         store_some_of(force, U(3), c, arm_j * side - moment, now)
-
-
-@njit(**INLINED)
-def begin_sums(taken, lost):
-    """Set the sums of a chunk to zero."""
-    for k in range(TAKEN):
-        taken[U(k)] = 0.0
-    for k in range(lost.size):
-        lost[U(k)] = 0.0
-
-
-@njit(**INLINED)
-def end_sums(taken, lost):
-    """Add the energies of the lanes to those of the chunk, see `single_pairs.push`."""
-    for k in range(LANES):
-        lost[0] += taken[U(k)]
-        lost[2] += taken[U(LANES + k)]
-        lost[4] += taken[U(2 * LANES + k)]
 
 
 @njit(**FAST, forceinline=True)  # called, it would call the functions above in turn: twice the time

@@ -25,8 +25,8 @@ from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import TARGET_KEYS, Material
-from dembound.casefile.disks.stiffness import STIFFNESS_KEYS
 from dembound.casefile.disks.static import Static
+from dembound.casefile.disks.stiffness import STIFFNESS_KEYS
 from dembound.casefile.tables import ENDING
 from dembound.continuum import sizing
 from dembound.disks.material.case_material import nominal_moduli

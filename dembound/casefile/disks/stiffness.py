@@ -30,9 +30,7 @@ def problems_with_target(material: "MaterialTable") -> list[str]:
         if key in material.model_fields_set
     ]
     if "match" in material.model_fields_set:
-        problems.append(
-            f"match: is only allowed together with p_wave_speed alone; {together} are those of the packing"
-        )
+        problems.append(f"match: is only allowed together with p_wave_speed alone; {together} are those of the packing")
     if pair == PAIRS[2]:
         if "plane" in material.model_fields_set:
             problems.append("plane: is only allowed together with young and poisson, or bulk and shear")
