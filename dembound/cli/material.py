@@ -240,7 +240,8 @@ def match_strengths(
 
     material, options = case.material, loading.options()
     cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    search, done = strengths.Search(wanted, cohesion, strengths.spread_of(material.pb_scatter)), []
+    spread = strengths.spread_of(material.pb_scatter)
+    search, done = strengths.Search(wanted, cohesion, spread, material.pb_mcf), []
     said = f"{case.name}: stopped; the same command continues what is left"
     with ending_with(said), shown(case.name, "samples") as report:
         measure = strengths.measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)

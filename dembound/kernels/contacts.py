@@ -187,7 +187,7 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
             lost[3] += 1.0
     elif rolls(limits) and geometry != REFERENCE:
         moment = roll_pair(limits, c, k, N, step * (v[U(2), j] - v[U(2), i]), contacts, lost)
-    if contacts.viscosity.shape[1] > 0:
+    if contacts.viscosity.shape[1] > 0 and (contacts.damps_bonds or not intact):
         sliding = slide(i, j, k, nx, ny, distance, v, constants)
         push, rub = _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost)
         pull -= push

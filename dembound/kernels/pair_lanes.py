@@ -231,9 +231,11 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
                 store_some(contacts.slip, c, splat(0.0), gone)
             store_some(contacts.shear, c, shear, now)
         if contacts.viscosity.shape[1] > 0:
-            push, rub = _resist(law, at, overlap, opening, sliding, step, now, contacts, limits, taken)
-            pull -= push
-            side += rub
+            dashed = now if contacts.damps_bonds else np.uint8(now & ~intact)
+            if dashed != 0:
+                push, rub = _resist(law, at, overlap, opening, sliding, step, dashed, contacts, limits, taken)
+                pull -= choose(bits(dashed), push, 0.0)
+                side += choose(bits(dashed), rub, 0.0)
         force = contacts.force
         store_some_of(force, U(0), c, nx * pull - ny * side, now)
         store_some_of(force, U(1), c, ny * pull + nx * side, now)

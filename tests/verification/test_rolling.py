@@ -106,5 +106,4 @@ def test_broken_ground_has_the_same_bits_by_any_threads_and_after_a_cut_and_the_
         assert np.array_equal(one.state.velocity, other.state.velocity)
         assert np.array_equal(one.state.work, other.state.work)
     last = ledger.entries[-1]
-    print(last)
     assert abs(last.error) < 3e-4 * last.supplied

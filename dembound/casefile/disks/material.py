@@ -29,7 +29,7 @@ ROLLING_KEY = "rr_fric"
 """Key of contacts that resist rolling, for a history-dependent law that has it."""
 
 DASHPOT_KEYS = ("dp_nratio", "dp_sratio")
-HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS)
+HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS, "dp_on")
 """Keys for history-dependent laws only."""
 
 
@@ -132,6 +132,11 @@ class MaterialTable(Table):
         ge=0.0,
         le=1.0,
     )
+    dp_on: Literal["unbonded", "all"] | None = quantity(
+        None,
+        unit="1",
+        help='contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break',
+    )
     quality_factor: float | None = quantity(
         None,
         unit="1",
@@ -210,6 +215,8 @@ class MaterialTable(Table):
             problems += self._problems_without_history()
         if self.has_dashpots:
             problems += self._problems_with_dashpots()
+        elif self.dp_on is not None:
+            problems.append("dp_on: is of dashpots of contacts, but there are none; give dp_nratio")
         if self.rr_fric > 0.0:
             problems += self._problems_with_rolling()
         if self.quality_factor is not None:
@@ -262,14 +269,20 @@ class MaterialTable(Table):
 
     @property
     def begins_elastic(self) -> bool:
-        """Whether the elastic law serves first in place of a history-dependent one; it has no dashpots."""
-        return self.elastic_start and not self.has_dashpots and LAWS[self.law].starts_elastic
+        """Whether the elastic law may serve first in place of a history-dependent one, see `DiskCase.begins_elastic`."""
+        return self.elastic_start and LAWS[self.law].starts_elastic
+
+    @property
+    def damps_bonds(self) -> bool:
+        """Whether dashpots of contacts also act beside intact bonds, if no other material of the case has a strength."""
+        return self.dp_on == "all" or (self.dp_on is None and not self.valued(STRENGTH_KEYS))
 
     def _problems_with_dashpots(self) -> list[str]:
         """What dashpots of contacts do not go with."""
         problems = []
         given = [key for key in DASHPOT_KEYS if getattr(self, key) > 0.0]
-        if self.elastic_start and "elastic_start" in self.model_fields_set:
+        at_once = self.damps_bonds or self.no_bonds is not None
+        if at_once and self.elastic_start and "elastic_start" in self.model_fields_set:
             problems.append(f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out")
         if self.emod == 0.0 or self.contact_share == 0.0:
             none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"

@@ -181,7 +181,8 @@ class PairList:
         if self.dashpots is not None:
             viscosity = self.dashpots.at(self.arrays)
             drag = self.arrays.drag if history.drag is not None else np.zeros_like(viscosity)
-            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag)
+            damps_bonds = self.dashpots.damps_bonds
+            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag, damps_bonds=damps_bonds)
         if self.lags > 0 and history.lag is None:
             self.arrays = self.arrays._replace(lag=aligned_zeros(self.lags, len(self.arrays.first)))
         if self.rolls and history.rolled is None:

@@ -16,7 +16,7 @@ from dembound.kernels.tables.contacts import Contacts
 from dembound.motion.state import aligned_zeros
 from dembound.pairwise import of_law
 
-NO_DASHPOTS: dict[str, Any] = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0))}
+NO_DASHPOTS: dict[str, Any] = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0)), "damps_bonds": True}
 """Fields of `Contacts` without dashpots."""
 
 NO_ARMS: dict[str, Any] = {"lag": np.zeros((0, 0))}

@@ -28,7 +28,7 @@ def never_elastic_again(case: DiskCase) -> str:
         return "there is no static stage"
     if not LAWS[material.law].starts_elastic:
         return f'contacts under material.law = "{material.law}" are stiffer the more they overlap'
-    if material.has_dashpots:
+    if case.dashes_at_once:
         return "contacts have dashpots"
     if case.rolls:
         return "contacts without bonds resist rolling"

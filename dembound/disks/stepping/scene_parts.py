@@ -81,7 +81,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _layers(scene, part),
         scene.at_rest_of(name),
         bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
-        Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
+        Dashpots.of(scene.case, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
         3 * arms_per_bond(scene),
     )

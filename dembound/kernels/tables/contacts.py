@@ -63,7 +63,8 @@ class Contacts(NamedTuple):
     the contact pushed in the last step, see kernels/contacts.py; cracked : (b,) int64, step in which the bond broke,
     else −1; place : (b, 2) m, mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may
     break, see kernels/contacts.py; force : (4, b). viscosity : (2, b) N·s/m of normal and shear dashpots of contacts,
-    and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none. lag : (3K, b) m, m
+    and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none; damps_bonds :
+    whether they also act beside intact bonds. lag : (3K, b) m, m
     and rad, by which each of the K relaxation arms of a bond lags behind its stretch, its shear and its rotation in
     turn, see kernels/arms.py; (0, 0) without arms. rolled : (b,) rad, rotation of closed contacts without bonds that
     has not slid, which they resist; (0,) where none resists rolling.
@@ -74,7 +75,7 @@ class Contacts(NamedTuple):
     """
 
     begin: int
-
+    damps_bonds: bool
     first: np.ndarray
     second: np.ndarray
     contact_type: np.ndarray
