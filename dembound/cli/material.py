@@ -31,6 +31,7 @@ from dembound.studies.asked import Loading
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
+    from dembound.casefile.disks.material import Material
     from dembound.casefile.disks.model import DiskCase
     from dembound.results.recording import TestName
     from dembound.studies.laboratory.sample import Sample
@@ -264,6 +265,16 @@ def match_strengths(
         raise typer.Exit(FAILED)
 
 
+def _ratio_of_samples(material: Material) -> float | None:
+    """The ratio of compressive and tensile strength to expect of samples; None without both strengths of bonds."""
+    from dembound.studies.laboratory.strengths import Search, spread_of
+
+    if material.pb_ten is None or material.pb_coh is None:
+        return None
+    spread = spread_of(material.pb_scatter)
+    return Search({}, material.pb_coh / material.pb_ten, spread, material.pb_mcf).expected_ratio()
+
+
 SEEDS = 8
 """Samples of each test, by default."""
 
@@ -305,6 +316,8 @@ def material(
 
     scene = build(load_disks(case, changes))
     found = describe_materials(scene)
+    for each, own in zip(found, materials_of(scene), strict=True):
+        each["strength_ratio"] = _ratio_of_samples(own.material)
     if as_json:
         print_lines(*json.dumps(found, indent=2, allow_nan=False).splitlines())
         return
@@ -316,3 +329,7 @@ def material(
             out.print()
             print_rows(title, rows)
         out.print()
+        if each["strength_ratio"] is not None:
+            what = f"pb_coh over pb_ten and pb_mcf = {own.material.pb_mcf:g}"
+            out.print(f"Samples: compressive over tensile strength about {each['strength_ratio']:.2g}, from {what}")
+            out.print()

@@ -26,7 +26,7 @@ def test_they_act_where_bonds_are_broken_only(lab, size):
     """Before a bond breaks the bits are those of ground without dashpots, which also begins under the elastic law."""
     quiet = [run(lab, size, 0.01, **given)[0] for given in ({}, RATIOS)]
     assert np.array_equal(quiet[0].state.velocity, quiet[1].state.velocity)
-    assert not quiet[1].system.disks.uses_history
+    assert quiet[1].system.scene.case.begins_elastic
     simulation, last = run(lab, size, **RATIOS)
     (contacts,) = simulation.system.contacts.values()
     intact = contacts.of("state") == INTACT
