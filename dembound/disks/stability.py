@@ -54,8 +54,8 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     multiplied by 1.4 where contacts may open (`OPENING`).
 
     Dashpots C of contacts are half a step behind: in place of K stands K + 2C/Δt, whose largest eigenvalue is at most
-    the sum of those of both. Where they act on unbonded contacts alone, the step of intact ground is not changed by
-    them, but it must also be stable where bonds are broken, see `_partly_broken`. Resistance to rolling does not shorten
+    the sum of those of both. Where they act on unbonded contacts alone, the step need not be that of intact ground with
+    dashpots, but must be stable where bonds are broken, see `_partly_broken`. Resistance to rolling does not shorten
     it, see `_loose_eigenvalue`. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
 
     Raises RunError when the iteration for the eigenvalue does not converge.

@@ -33,7 +33,7 @@ def rolled_on(limits, constants, k, kind, push, before, turned):
 
     push : N; before : rad, the rotation that had not slid a step earlier; turned : rad, rotation of the second disk
     relative to the first in the step. The moment of whole steps does the work ½(M⁻ + M) turned, of which the spring
-    stores the change of ½k_r times the square of the rotation. Of an open contact, which does not push, nothing is left.
+    stores the change of ½k_r times the square of the rotation. Nothing is left of it in a contact that does not push.
     """
     stiff, radius = rolling(limits, constants, k)
     most, angle = most_moment(limits, kind, radius, push), before + turned

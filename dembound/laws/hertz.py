@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dembound.laws.law import Key, Law, Limits, Moduli, Springs
+from dembound.laws.law import AnyLimits, Key, Law, Moduli, Springs
 from dembound.pairwise import PLACE, Column, at_most, choose, index, is_pair_law, larger, limit_of, root
 
 COLUMNS = (
@@ -79,7 +79,7 @@ class Hertz(Law):
         ratio = (2.0 - poisson) / (2.0 * (1.0 - poisson))
         return Elasticity(shear, 0.0, kratio=ratio, fric=given.fric, hz_shear=shear, hz_poiss=poisson)
 
-    def limits(self, strength: Limits) -> Friction:
+    def limits(self, strength: AnyLimits) -> Friction:
         """Friction alone."""
         return Friction(strength.friction, strength.geometry)
 

@@ -139,7 +139,10 @@ def columns_of(limits: Any) -> tuple[Any, ...]:
 def in_columns(limits: np.ndarray, geometry: int) -> AnyLimits:
     """Limits (p, 4) or, of contacts that resist rolling, (p, 5) of rows of constants as columns, see `columns_of`."""
     columns = np.ascontiguousarray(limits.T)
-    return (Limits if len(columns) == 4 else RollingLimits)(*columns, geometry)
+    friction, tension, cohesion, tan_fa = columns[:4]
+    if len(columns) == 4:
+        return Limits(friction, tension, cohesion, tan_fa, geometry)
+    return RollingLimits(friction, tension, cohesion, tan_fa, columns[4], geometry)
 
 
 class Law(ABC):
@@ -154,8 +157,8 @@ class Law(ABC):
     stress. If not, springs are those of small motion about the stress at rest, and there are none without.
     secant : force over displacement from no force over the stiffness of small motion, normal and in shear.
     strengths : names of the limits at which bonds break. relaxes : whether intact bonds may have relaxation arms
-    (kernels/arms.py), for which the forces of closed contacts and of bonds must be linear, and a quality factor. rolls :
-    whether contacts without bonds may resist rolling, by the key rr_fric.
+    (kernels/arms.py), for which the forces of closed contacts and of bonds must be linear, and a quality factor.
+    rolls : whether contacts without bonds may resist rolling, by the key rr_fric.
     keys : of [material] that it adds, all required under it; uses : names of others that it has a use for, None for
     all. elsewhere : its names in other codes. help : what contacts and bonds do under it, in a few words.
     """
@@ -210,7 +213,7 @@ class Law(ABC):
         keys = (field.name for field in fields(Moduli))
         return Moduli(**{key: getattr(given, key) for key in keys})
 
-    def limits(self, strength: Limits) -> Any:
+    def limits(self, strength: AnyLimits) -> Any:
         """What the functions of the law get of the limits of a material; they are found by its type."""
         return strength
 

@@ -13,7 +13,7 @@ SECTION = 1.5 / RADIUS**2  # R̄/J
 
 
 def turned(lab, share: float, factor: float) -> tuple[bool, float]:
-    """Two bonded disks are given opposite spins, and turn to an angle of `share` of where their bond breaks with pb_mcf.
+    """Two bonded disks get opposite spins, by which they turn to a `share` of the angle at which their bond breaks.
 
     Returns whether it broke, and the largest relative rotation over the one expected.
     """
@@ -27,7 +27,7 @@ def turned(lab, share: float, factor: float) -> tuple[bool, float]:
     )
     # φ'' = −2k φ/I for the relative rotation φ, so that its largest value is φ'/√(2k/I)
     rate = np.sqrt(2.0 * BENDING / scene.inertia[0])
-    angle = share * STRENGTH / (max(factor, 1.0 if factor == 0.0 else factor) * SECTION * BENDING)
+    angle = share * STRENGTH / ((factor or 1.0) * SECTION * BENDING)
     simulation = lab.simulation(scene, step=0.02 / rate, probes=[0, 1])
     simulation.state.velocity = np.array([[0.0, 0.0], [0.0, 0.0], [-0.5 * angle * rate, 0.5 * angle * rate]])
     record = simulation.advance(400)

@@ -55,8 +55,8 @@ def test_a_disk_rests_below_the_slope_of_its_rolling_resistance_and_rolls_as_in_
     """At rest S = mg sin α and M = SR, so that tan α is rr_fric R̄/R at most; R̄ is nearly R.
 
     Above it rolls by a = g(sin α − rr_fric R̄/R cos α)/(1 + I/mR²) with I/mR² = ½. On its way s of up to 3 cm the floor
-    turns by s/FLOOR = 3e-4, of the excess of 0.05 · 0.3 in the slope 2 %, and half of that in the mean. The moment takes
-    rr_fric R̄ N on each radian.
+    turns by s/FLOOR = 3e-4, of the excess of 0.05 · 0.3 in the slope 2 %, and half of that in the mean. The moment
+    takes rr_fric R̄ N on each radian; while the disk swings on its springs some 1 % less.
     """
     slope = share * ROLLING * REDUCED
     simulation, velocity, last = rolled(lab, slope)

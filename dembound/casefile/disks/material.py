@@ -40,8 +40,8 @@ class MaterialTable(Table):
     `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
     `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
     "linearpbond" is PFC's, and alone has `locked_in`, `geometry` and `elastic_start`. Strengths are for it and for
-    `output.load_factor`; it alone has `rr_fric`. Under "hertz" the stiffness follows from `hz_shear`, `hz_poiss` and the stress at rest,
-    `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
+    `output.load_factor`, and `rr_fric` for it. Under "hertz" stiffness follows from `hz_shear`, `hz_poiss` and the
+    stress at rest, `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
     density: float = quantity(
@@ -269,12 +269,12 @@ class MaterialTable(Table):
 
     @property
     def begins_elastic(self) -> bool:
-        """Whether the elastic law may serve first in place of a history-dependent one, see `DiskCase.begins_elastic`."""
+        """Whether the elastic law may serve first in place of a history-dependent one, see the case's."""
         return self.elastic_start and LAWS[self.law].starts_elastic
 
     @property
     def damps_bonds(self) -> bool:
-        """Whether dashpots of contacts also act beside intact bonds, if no other material of the case has a strength."""
+        """Whether dashpots of contacts also act beside intact bonds, if no layer's bonds have a strength."""
         return self.dp_on == "all" or (self.dp_on is None and not self.valued(STRENGTH_KEYS))
 
     def _problems_with_dashpots(self) -> list[str]:

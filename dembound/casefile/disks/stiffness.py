@@ -1,11 +1,8 @@
 """Mistakes in how the stiffness of a [material] is given: by targets of the body, by a wave speed, or by moduli."""
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 from dembound.casefile.disks.targets import PAIRS
-
-if TYPE_CHECKING:
-    from dembound.casefile.disks.material import MaterialTable
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
@@ -14,7 +11,7 @@ STIFFNESS_KEYS = (*(key for pair in PAIRS for key in pair), *MODULI_KEYS)
 """Keys from which the moduli follow."""
 
 
-def problems_with_target(material: "MaterialTable") -> list[str]:
+def problems_with_target(material: Any) -> list[str]:
     """Mistakes of a material given by elastic constants of the body."""
     pair = material.pair
     together = " and ".join(pair)
@@ -48,13 +45,13 @@ def problems_with_target(material: "MaterialTable") -> list[str]:
     return problems
 
 
-def problems_with_speed(material: "MaterialTable") -> list[str]:
+def problems_with_speed(material: Any) -> list[str]:
     """Mistakes of a material given by its P-wave speed."""
     why = "is not allowed together with p_wave_speed, which gives the moduli"
     return [f"{key}: {why}" for key in material.valued(MODULI_KEYS)]
 
 
-def problems_with_moduli(material: "MaterialTable") -> list[str]:
+def problems_with_moduli(material: Any) -> list[str]:
     """Mistakes of a material without a P-wave speed."""
     missing = [key for key in MODULI_KEYS if getattr(material, key) is None]
     by_speed = len(missing) == 2

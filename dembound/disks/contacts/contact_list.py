@@ -235,10 +235,8 @@ class ContactList(RenewedList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        history = ContactHistory(
-            **{name: saved[name] for name in HISTORY},
-            **{name: saved.get(name) for name in ("drag", "lag", "rolled")},
-        )
+        history = ContactHistory(**{name: saved[name] for name in HISTORY})
+        history = history._replace(**{name: saved.get(name) for name in ("drag", "lag", "rolled")})
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))

@@ -88,7 +88,7 @@ def _in_full(limits: AnyLimits) -> RollingLimits:
     """Limits with a resistance to rolling, which may be 0."""
     if isinstance(limits, RollingLimits):
         return limits
-    return RollingLimits(*columns_of(limits), 0.0, limits.geometry)
+    return RollingLimits(**{**limits._asdict(), "rolling": 0.0})
 
 
 def ground_limits(
