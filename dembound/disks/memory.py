@@ -243,7 +243,6 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
         total(counts, "saved", saved_pairs=has_history, saved_arms=case.relaxes, saved_rolling=_resists_rolling(case))
         * (case.run.checkpoint > 0.0),
-        *(case.run.checkpoint > 0.0),
         total(whole.counts, "mesh_header"),
     ]
     return moving + pairs + max(kept)
