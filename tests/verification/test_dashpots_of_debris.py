@@ -64,7 +64,10 @@ def matrices(lab, scene, whole: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
 @pytest.mark.parametrize("ratios", [{"dp_nratio": 0.2}, RATIOS, {"dp_nratio": 0.5, "dp_sratio": 0.5}])
 def test_the_step_is_stable_whatever_has_broken_and_longer_than_with_dashpots_everywhere(lab, share, ratios):
-    """K/OPENING + 2C/Δt is at most 4/Δt² for any bonds that are broken, by their matrices."""
+    """K/OPENING + 2C/Δt is at most 4/Δt² for any bonds that are broken, by their matrices, and for loose disks.
+
+    Those may lie on six others, where all disks turn alike or move to and fro: 24k_s/m and (6k_n + 2k_s)/m.
+    """
     material = BRITTLE | {"contact_share": share, "kratio": 2.0, "pb_kratio": 2.0} | ratios
     scene = lab.scene("A", (2.5, 2.5), held=(), material=material)
     step, rng = step_limit(scene), np.random.default_rng(0)
@@ -74,5 +77,11 @@ def test_the_step_is_stable_whatever_has_broken_and_longer_than_with_dashpots_ev
         stiffness, viscosity = matrices(lab, scene, whole)
         worst = max(worst, np.linalg.eigvalsh(stiffness / OPENING + 2.0 / step * viscosity)[-1] * step**2)
     assert 1.0 < worst <= 4.0 * (1.0 + 1e-4)  # rounding of the iteration for the eigenvalue
+    mass, moduli, given = scene.mass.min(), scene.ground.moduli, scene.case.material
+    normal, shear = (
+        k / OPENING + 2.0 / step * 2.0 * ratio * np.sqrt(0.5 * mass * k)
+        for k, ratio in ((moduli.emod, given.dp_nratio), (moduli.emod / moduli.kratio, given.dp_sratio))
+    )
+    assert max(24.0 * shear, 6.0 * normal + 2.0 * shear) / mass * step**2 <= 4.0
     everywhere = lab.scene("A", (2.5, 2.5), held=(), material=material | {"dp_on": "all"})
     assert step >= step_limit(everywhere)

@@ -122,6 +122,6 @@ def test_between_two_materials_the_smaller_limits_hold(lab) -> None:
     assert found.geometry == alone.geometry
 
     rolling = [lab.scene("A", (4.0, 4.0), material=BRITTLE | {"rr_fric": each}).case.material for each in (0.2, 0.4)]
-    found = limits_between([(rolling[0], rolling[1]), (rolling[1], rolling[1]), (one, rolling[1])], 1)
+    found = limits_between([(rolling[1], rolling[0]), (rolling[1], rolling[1]), (one, rolling[1])], 1)
     assert found.rolling.tolist() == [0.2, 0.4, 0.0]
     assert np.array_equal(np.array(found[:4]).T, np.tile([alone[:4]], (3, 1)))
