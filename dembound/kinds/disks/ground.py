@@ -174,6 +174,8 @@ def _law_facts(scene: DiskScene) -> Entries:
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if scene.case.begins_elastic else ""
     yield "law", f"{material.law}{start}"
+    if scene.case.rolls:
+        yield "rolling", "springs against rolling act from the start; wave speeds, sides and estimates leave them out"
     if scene.ground.overlaps is not None:
         yield "overlap", _overlap_fact(scene.ground)
     if material.has_dashpots:
