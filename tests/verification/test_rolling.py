@@ -4,6 +4,7 @@ import numba
 import numpy as np
 import pytest
 
+from dembound.disks.rest.stage import settle
 from dembound.disks.stability import step_limit
 from dembound.kernels.contacts import INTACT
 from dembound.motion import memory
@@ -107,3 +108,19 @@ def test_broken_ground_has_the_same_bits_by_any_threads_and_after_a_cut_and_the_
         assert np.array_equal(one.state.work, other.state.work)
     last = ledger.entries[-1]
     assert abs(last.error) < 3e-4 * last.supplied
+
+
+def test_a_settled_heap_stays_at_rest_with_the_moments_of_its_contacts(lab):
+    """Loose disks settle under their weight between fixed sides; what has turned them is kept beyond the stage."""
+    sides, weight = dict.fromkeys(("left", "right", "bottom"), "fixed"), [{"acceleration": [0.0, -GRAVITY]}]
+    static = {"ratio": 1e-8, "boundary": {side: {"type": "fixed"} for side in sides}}
+    words = {"held": (), "boundary": sides, "load": weight, "static": static, "brick": (4.0, 4.0)}
+    scene = lab.scene("B", (4.0, 4.0), **words, material=LOOSE)
+    start = settle(scene).start
+    rolled = {name: pairs.of("rolled").copy() for name, pairs in start.contacts.items()}
+    simulation = lab.simulation(scene, start)
+    simulation.advance(100)
+    (contacts,) = simulation.system.contacts.values()
+    assert np.abs(rolled["body"]).max() > 0.0
+    assert np.array_equal(contacts.of("rolled"), rolled["body"])
+    assert not simulation.state.velocity.any()
