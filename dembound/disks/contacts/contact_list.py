@@ -1,6 +1,7 @@
 """The pairs of a scene: particles in contact or nearly in contact, listed anew as particles move."""
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
@@ -236,7 +237,8 @@ class ContactList(RenewedList):
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
         history = ContactHistory(**{name: saved[name] for name in HISTORY})
-        history = history._replace(**{name: saved.get(name) for name in ("drag", "lag", "rolled")})
+        more: dict[str, Any] = {name: saved.get(name) for name in ("drag", "lag", "rolled")}
+        history = history._replace(**more)
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))
