@@ -92,7 +92,7 @@ def _layers(scene: DiskBody, part: Assembly) -> tuple[AnyLimits, np.ndarray, np.
     ground, materials = scene.ground, scene.case.materials
     if not isinstance(ground, LayeredGround):
         return None
-    layer = ground.layer_of(part.positions[:, 1])
+    layer = ground.layer_of(part.positions)
     friction, rolling = (np.array([getattr(each, key) for each in materials])[layer] for key in ("fric", "rr_fric"))
     return ground_limits(ground, materials), friction, rolling
 
