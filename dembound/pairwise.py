@@ -108,6 +108,18 @@ def _viscosity(limits, constants, k, overlap):
     return 1.0
 
 
+def _rolls(limits):
+    return False
+
+
+def _rolling(limits, constants, k):
+    return 0.0, 0.0
+
+
+def _most_moment(limits, kind, radius, push):
+    return 0.0 * push
+
+
 def _contact_room(limits, constants, k, kind, overlap, stuck):
     return 0.0 * overlap
 
@@ -133,6 +145,9 @@ DEFAULTS: dict[str, Callable[..., Any]] = {
     "slip_after": _slip_after,
     "rubbed": _rubbed,
     "viscosity": _viscosity,
+    "rolls": _rolls,
+    "rolling": _rolling,
+    "most_moment": _most_moment,
     "contact_room": _contact_room,
     "bond": _bond,
     "breaks": _breaks,
@@ -141,8 +156,8 @@ DEFAULTS: dict[str, Callable[..., Any]] = {
 }
 """Functions that a law may leave out.
 
-They are those of contacts whose stiffness in shear and viscosity do not depend on the overlap, without bonds, and under
-a law that does not begin elastic.
+They are those of contacts whose stiffness in shear and viscosity do not depend on the overlap, that do not resist
+rolling, without bonds, and under a law that does not begin elastic.
 """
 
 

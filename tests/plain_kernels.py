@@ -252,6 +252,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,
+        True,
         first.astype(np.uint32),
         second.astype(np.uint32),
         np.arange(b, dtype=np.uint32),
@@ -268,6 +269,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         np.zeros((2, 0)),
         np.zeros((2, 0)),
         np.zeros((0, 0)),
+        np.zeros(0),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),
         np.linspace(0, b, CHUNKS + 1).astype(np.int64),
@@ -311,7 +313,7 @@ def one_pair(state: int = NONE, overlap: float = 0.0) -> tables.Contacts:
 
 def copied(pairs: tables.Contacts) -> tables.Contacts:
     """Pairs with columns of their own."""
-    return tables.Contacts(pairs.begin, *(column.copy() for column in pairs[1:]))
+    return tables.Contacts(*pairs[:2], *(column.copy() for column in pairs[2:]))
 
 
 def alone(pairs: tables.Contacts, c: int) -> tables.Contacts:

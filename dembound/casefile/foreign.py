@@ -159,10 +159,12 @@ NAMES: dict[tuple[str, ...], Advice] = {
     ("rmul", "pb_radius", "pb_rad", "radius_multiplier", "bond_radius"): (
         ("pb_rmul", "write pb_rmul, bond over smaller radius"),
     ),
-    ("pb_mcf", "mcf", "moment_contribution"): (("", f"there is none: bonds break as with pb_mcf = 1{_MORE}"),),
+    ("mcf", "moment_contribution", "moment_contribution_factor", "lambda_m"): (
+        ("pb_mcf", "write pb_mcf, 0 to 1, the share of the moment in the stress of bonds"),
+    ),
     ("rgap", "reference_gap"): (("law", f"there is none: contacts are unloaded at their packed distance{_MORE}"),),
-    ("rr_fric", "rolling_friction", "rolling_resistance", "rfric"): (
-        ("", f"there is none: only bonds resist rotation{_MORE}"),
+    ("rolling_friction", "rolling_resistance", "rfric", "etaroll", "eta_roll", "mu_roll", "mu_r", "rrlinear"): (
+        ("rr_fric", f"write rr_fric, the largest moment over R̄ times the normal force{_MORE}"),
     ),
     ("model", "contact_model", "cmat", "bond_type", "contact_type", "cm_type"): (
         ("law", f"write law, {_LAWS}"),

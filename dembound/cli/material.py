@@ -31,6 +31,7 @@ from dembound.studies.asked import Loading
 from dembound.words import percent, with_unit
 
 if TYPE_CHECKING:
+    from dembound.casefile.disks.material import Material
     from dembound.casefile.disks.model import DiskCase
     from dembound.results.recording import TestName
     from dembound.studies.laboratory.sample import Sample
@@ -240,7 +241,8 @@ def match_strengths(
 
     material, options = case.material, loading.options()
     cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    search, done = strengths.Search(wanted, cohesion, strengths.spread_of(material.pb_scatter)), []
+    spread = strengths.spread_of(material.pb_scatter)
+    search, done = strengths.Search(wanted, cohesion, spread, material.pb_mcf), []
     said = f"{case.name}: stopped; the same command continues what is left"
     with ending_with(said), shown(case.name, "samples") as report:
         measure = strengths.measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
@@ -261,6 +263,16 @@ def match_strengths(
         said = f"no trial of {len(done)} is within {percent(strengths.CLOSE)}; written is the best one"
         err.print(f"{case.name}: {said}: {missed}")
         raise typer.Exit(FAILED)
+
+
+def _ratio_of_samples(material: Material) -> float | None:
+    """The ratio of compressive and tensile strength to expect of samples; None without both strengths of bonds."""
+    from dembound.studies.laboratory.strengths import Search, spread_of
+
+    if material.pb_ten is None or material.pb_coh is None:
+        return None
+    spread = spread_of(material.pb_scatter)
+    return Search({}, material.pb_coh / material.pb_ten, spread, material.pb_mcf).expected_ratio()
 
 
 SEEDS = 8
@@ -304,6 +316,8 @@ def material(
 
     scene = build(load_disks(case, changes))
     found = describe_materials(scene)
+    for each, own in zip(found, materials_of(scene), strict=True):
+        each["strength_ratio"] = _ratio_of_samples(own.material)
     if as_json:
         print_lines(*json.dumps(found, indent=2, allow_nan=False).splitlines())
         return
@@ -315,3 +329,7 @@ def material(
             out.print()
             print_rows(title, rows)
         out.print()
+        if each["strength_ratio"] is not None:
+            what = f"pb_coh over pb_ten and pb_mcf = {own.material.pb_mcf:g}"
+            out.print(f"Samples: compressive over tensile strength about {each['strength_ratio']:.2g}, from {what}")
+            out.print()

@@ -197,7 +197,13 @@ def pairs_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Bytes of the list of pairs with a history."""
     scatter, dashpots = case.material.pb_scatter is not None, case.material.has_dashpots
     every = {"pairs_in_rows": z.in_rows, "scatter": scatter, "dashpots": dashpots, "arms": case.relaxes}
+    every["rolling"] = _resists_rolling(case)
     return total(_with_arms(case, z), "pairs", **every)
+
+
+def _resists_rolling(case: DiskCase) -> bool:
+    """Whether contacts without bonds resist rolling in some layer."""
+    return any(material.rr_fric > 0.0 for material in case.materials)
 
 
 def _listing_bytes(case: DiskCase, z: SceneSizes) -> float:
@@ -236,7 +242,8 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
         fields = max(fields, total(counts, "stress", "stress_field"))
     kept = [
         (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
-        total(counts, "saved", saved_pairs=has_history, saved_arms=case.relaxes) * (case.run.checkpoint > 0.0),
+        total(counts, "saved", saved_pairs=has_history, saved_arms=case.relaxes, saved_rolling=_resists_rolling(case))
+        * (case.run.checkpoint > 0.0),
         total(whole.counts, "mesh_header"),
     ]
     return moving + pairs + max(kept)
@@ -261,6 +268,7 @@ def storage_of(case: DiskCase, z: SceneSizes) -> Storage:
     stages = {
         "saved_pairs": has_history,
         "saved_arms": case.relaxes,
+        "saved_rolling": has_history and _resists_rolling(case),
         "state_history": has_history,
         "state_settled": case.static is not None,
     }

@@ -54,7 +54,9 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     multiplied by 1.4 where contacts may open (`OPENING`).
 
     Dashpots C of contacts are half a step behind: in place of K stands K + 2C/Δt, whose largest eigenvalue is at most
-    the sum of those of both. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
+    the sum of those of both. Where they act on unbonded contacts alone, the step need not be that of intact ground with
+    dashpots, but must be stable where bonds are broken, see `_partly_broken`. Resistance to rolling does not shorten
+    it, see `_loose_eigenvalue`. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
 
     A wall counts as a neighbour, see `_beyond_neighbours`.
 
@@ -64,8 +66,10 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     if scene.has_history:
         zones, dashed = _zones_of(scene.ground), viscous and scene.case.material.has_dashpots
         opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.ground.materials)
-        if dashed:
+        if dashed and scene.case.damps_bonds:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
+        elif dashed:
+            bounds += _partly_broken(scene, bounds[0][0])
         bounds += [(_loose_eigenvalue(zone), _loose_viscosity(scene, zone) if dashed else 0.0) for zone in zones]
         stiffer, slower = _beyond_neighbours(scene)
         bounds = [(largest + stiffer, slows + slower * viscous) for largest, slows in bounds]
@@ -103,6 +107,25 @@ def _largest_viscosity(scene: DiskScene) -> float:
 
     moves = np.ones((3, count), dtype=bool)
     return largest_eigenvalue(Layout.plain(count), scene.mass[:count], scene.inertia[:count], scene.free, moves, fill)
+
+
+def _partly_broken(scene: DiskScene, largest: float) -> list[tuple[float, float]]:
+    """Bounds of the eigenvalues of M⁻¹K and M⁻¹C where some contacts have bonds, and others have dashpots instead.
+
+    largest : eigenvalue with all bonds. In place of the springs k + k̄ of a contact with a bond stand k + 2c/Δt without:
+    no matrix is larger than that of all bonds times the largest ratio of both, max k/(k + k̄) + 2/Δt max c/(k + k̄).
+    """
+    ground, shares, rates = scene.ground, [0.0], [0.0]
+    radii = ground.brick.radii[ground.brick.pairs].T
+    for pairing in ground.pairings:
+        constants = ground.pair_constants((radii[0], radii[1]), ground.brick.vectors, pairing, gaps_close=False)
+        viscous = brick_dashpots(ground, scene.case.material, pairing)
+        for names, rate in ((("kn", "bond_kn"), viscous.normal), (("ks", "bond_ks"), viscous.shear)):
+            contact, bond = (ground.law.column(constants, name) for name in names)
+            acts = contact > 0.0
+            shares += (contact[acts] / (contact + bond)[acts]).tolist()
+            rates += (rate[acts] / (contact + bond)[acts]).tolist()
+    return [(max(shares) * largest, max(rates) * largest)]
 
 
 def _with_lag(scene: DiskScene, limit: float) -> float:
@@ -201,7 +224,8 @@ def _loose_eigenvalue(ground: PackedMaterial) -> float:
     """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
 
     With contacts and no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
-    24k_s/m, when all disks rotate in the same way; the sum is a bound for both together.
+    24k_s/m, when all disks rotate in the same way; the sum is a bound for both together. Springs k_s R̄² against rolling
+    add nothing to this motion, and less to others than its distance from them.
     """
     normal, shear = _loose_springs(ground)
     return (6.0 * normal + 24.0 * shear) / float(ground.mass.min())

@@ -24,14 +24,11 @@ from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, CLOSED, INTACT, MAY_BREAK, REACHED, SHEAR, TENSION
 from dembound.kernels.lane_step import next_place, place_of
+from dembound.kernels.lane_sums import TAKEN, add_to, begin_sums, end_sums
 from dembound.kernels.law import answer, generic
 from dembound.kernels.pair_lanes import (
     ALL,
-    TAKEN,
-    add_to,
     apart_of,
-    begin_sums,
-    end_sums,
     in_lanes,
     reference,
     slide_of,

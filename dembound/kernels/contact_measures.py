@@ -8,7 +8,7 @@ from dembound.kernels.compiler.limits import factor_of
 from dembound.kernels.compiler.separate import apart, in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
-from dembound.kernels.pair_law import acts, bond_energy, bond_room, contact_energy, contact_room
+from dembound.kernels.pair_law import acts, bond_energy, bond_room, contact_energy, contact_room, rolling, rolls
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
 from dembound.pairwise import P
 
@@ -107,5 +107,7 @@ def _strain_energies(begin, end, u, contacts, limits, stored):
             if intact:
                 turn = u[U(2), j] - u[U(2), i] + began_with(began, k, U(2))
                 in_bonds += bond_energy(limits, constants, k, stretch, shear, turn)
+            elif rolls(limits):
+                in_contacts += 0.5 * rolling(limits, constants, k)[0] * contacts.rolled[c] ** 2
         stored[chunk, 0] = in_contacts
         stored[chunk, 1] = in_bonds

@@ -23,6 +23,7 @@ from dembound.kernels.pair_law import (
     breaks,
     most_shear,
     normal,
+    rolls,
     rubbed,
     shear_of,
     slip_after,
@@ -32,6 +33,7 @@ from dembound.kernels.pair_law import (
     viscosity,
 )
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
+from dembound.kernels.rolling import roll_pair
 from dembound.pairwise import P
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
@@ -183,7 +185,9 @@ def push_pair(c, u, v, step, number, contacts, limits, lost):
                 broken += stored_between(limits, constants, k, later, max(overlap, 0.0))
             lost[1 if broken > 0.0 else 2] += broken
             lost[3] += 1.0
-    if contacts.viscosity.shape[1] > 0:
+    elif rolls(limits) and geometry != REFERENCE:
+        moment = roll_pair(limits, c, k, N, step * (v[U(2), j] - v[U(2), i]), contacts, lost)
+    if contacts.viscosity.shape[1] > 0 and (contacts.damps_bonds or not intact):
         sliding = slide(i, j, k, nx, ny, distance, v, constants)
         push, rub = _resist(c, k, overlap, opening, sliding, step, contacts, limits, lost)
         pull -= push

@@ -19,7 +19,6 @@ from dembound.kernels.compiler.lane_access import (
     load_of,
     note_some,
     nth,
-    store,
     store_some,
     store_some_of,
     where_equal,
@@ -51,25 +50,25 @@ from dembound.kernels.contacts import (
     resistance,
 )
 from dembound.kernels.lane_step import next_place, place_of
+from dembound.kernels.lane_sums import TAKEN, add_to, begin_sums, end_sums
 from dembound.kernels.pair_law import (
     acts,
     bond,
     breaks,
     most_shear,
     normal,
+    rolls,
     rubbed,
     shear_of,
     slip_after,
     slip_at,
     slips_by_overlap,
 )
+from dembound.kernels.rolling import roll_eight
 from dembound.pairwise import P
 
 ALL = np.uint8(2**LANES - 1)
 """The byte of eight pairs."""
-
-TAKEN = 3 * LANES
-"""Numbers in `taken`."""
 
 _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY_BREAK, CLOSES, CLOSED))
 
@@ -78,12 +77,6 @@ _INTACT, _MAY_BREAK, _CLOSES, _CLOSED = (np.uint8(each) for each in (INTACT, MAY
 def in_lanes(numbers):
     """A number in all lanes, or lanes themselves."""
     return splat(0.0) + numbers
-
-
-@njit(**INLINED)
-def add_to(sums, first, values):
-    """Add eight numbers to those in an array (n,) from index `first` on."""
-    store(sums, U(first), load(sums, U(first)) + values)
 
 
 @njit(**INLINED)
@@ -227,6 +220,10 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
             N, S = _contact(law, at, overlap, shear, opening, sliding, step, now, contacts, limits, taken)
             pull -= N
             side += S
+            if rolls(limits):
+                loose = np.uint8(now & ~intact)
+                if loose != 0:
+                    moment += roll_eight(limits, law, at, N, step, loose, v, contacts, taken)
         if follows:
             gone = np.uint8(byte_of(at_most(overlap, 0.0)) & ~intact & now)
             if gone != 0:  # as if the pair was met anew when it closes, see contacts.push_pair
@@ -234,32 +231,16 @@ def push_eight(law, at, exists, way, u, v, step, contacts, limits, taken, breaki
                 store_some(contacts.slip, c, splat(0.0), gone)
             store_some(contacts.shear, c, shear, now)
         if contacts.viscosity.shape[1] > 0:
-            push, rub = _resist(law, at, overlap, opening, sliding, step, now, contacts, limits, taken)
-            pull -= push
-            side += rub
+            dashed = now if contacts.damps_bonds else np.uint8(now & ~intact)
+            if dashed != 0:
+                push, rub = _resist(law, at, overlap, opening, sliding, step, dashed, contacts, limits, taken)
+                pull -= choose(bits(dashed), push, 0.0)
+                side += choose(bits(dashed), rub, 0.0)
         force = contacts.force
         store_some_of(force, U(0), c, nx * pull - ny * side, now)
         store_some_of(force, U(1), c, ny * pull + nx * side, now)
         store_some_of(force, U(2), c, arm_i * side + moment, now)
         store_some_of(force, U(3), c, arm_j * side - moment, now)
-
-
-@njit(**INLINED)
-def begin_sums(taken, lost):
-    """Set the sums of a chunk to zero."""
-    for k in range(TAKEN):
-        taken[U(k)] = 0.0
-    for k in range(lost.size):
-        lost[U(k)] = 0.0
-
-
-@njit(**INLINED)
-def end_sums(taken, lost):
-    """Add the energies of the lanes to those of the chunk, see `single_pairs.push`."""
-    for k in range(LANES):
-        lost[0] += taken[U(k)]
-        lost[2] += taken[U(LANES + k)]
-        lost[4] += taken[U(2 * LANES + k)]
 
 
 @njit(**FAST, forceinline=True)  # called, it would call the functions above in turn: twice the time

@@ -63,6 +63,21 @@ def most_shear(limits, kind, push):
 
 
 @generic
+def rolls(limits):
+    """Whether closed contacts without bonds resist rolling; a constant, True or False."""
+
+
+@generic
+def rolling(limits, constants, k):
+    """Stiffness (N·m/rad) of a closed contact without bond against rolling, and the effective radius R̄ (m)."""
+
+
+@generic
+def most_moment(limits, kind, radius, push):
+    """Largest moment (N·m) by which a contact of effective radius (m) that pushes with a force (N) resists rolling."""
+
+
+@generic
 def bond(limits, constants, k, stretch, shear, turn):
     """Normal and shear force (N) and moment (N·m) of an intact bond."""
 

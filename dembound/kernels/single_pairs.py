@@ -9,7 +9,8 @@ from dembound.kernels.compiler.lanes import LANES
 from dembound.kernels.compiler.separate import in_chunks
 from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import INTACT, OPEN, push_each
-from dembound.kernels.pair_lanes import ALL, TAKEN, begin_sums, end_sums, push_eight
+from dembound.kernels.lane_sums import TAKEN, begin_sums, end_sums
+from dembound.kernels.pair_lanes import ALL, push_eight
 from dembound.kernels.pair_strain import pair
 from dembound.pairwise import P
 

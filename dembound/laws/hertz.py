@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from dembound.laws.law import Key, Law, Limits, Moduli, Springs
+from dembound.laws.law import AnyLimits, Key, Law, Moduli, Springs
 from dembound.pairwise import PLACE, Column, at_most, choose, index, is_pair_law, larger, limit_of, root
 
 COLUMNS = (
@@ -79,7 +79,7 @@ class Hertz(Law):
         ratio = (2.0 - poisson) / (2.0 * (1.0 - poisson))
         return Elasticity(shear, 0.0, kratio=ratio, fric=given.fric, hz_shear=shear, hz_poiss=poisson)
 
-    def limits(self, strength: Limits) -> Friction:
+    def limits(self, strength: AnyLimits) -> Friction:
         """Friction alone."""
         return Friction(strength.friction, strength.geometry)
 
@@ -114,7 +114,7 @@ class Hertz(Law):
         """Constants (b, 2) of pairs, in the columns after their place."""
         return np.column_stack([np.where(acts, each, 0.0) for each in _stiff(moduli, radius_i, radius_j)])
 
-    def without_limits(self, geometry: int) -> Friction:
+    def without_limits(self, geometry: int, *, rolls: bool = False) -> Friction:
         """Limits that no contact reaches."""
         return Friction(0.0, geometry)
 

@@ -23,7 +23,7 @@ def lattice_moduli(
 
 @dataclass(frozen=True)
 class Moduli:
-    """Micro-parameters under their PFC names: emod, pb_emod in Pa; kratio, pb_kratio, pb_rmul, fric pure numbers."""
+    """Micro-parameters under their PFC names: emod, pb_emod in Pa; the others are pure numbers."""
 
     emod: float
     pb_emod: float
@@ -31,6 +31,7 @@ class Moduli:
     pb_kratio: float = 1.0
     pb_rmul: float = 1.0
     fric: float = 0.0
+    pb_mcf: float = 1.0
 
 
 class Key(NamedTuple):
@@ -86,7 +87,7 @@ COLUMNS = (
     Column("bond_ks", "N/m", "shear stiffness of the bond, k̄_s A", in_half=0.5),
     Column("bending", "N·m/rad", "stiffness of the bond against rotation, k̄_n J", in_half=0.5),
     Column("per_area", "1/m", "stress of the bond over its force, 1/A", in_half=2.0),
-    Column("per_section", "1/m²", "stress at the edge of the bond over its moment, R̄/J", in_half=2.0),
+    Column("per_section", "1/m²", "stress of the bond over its moment, pb_mcf R̄/J", in_half=2.0),
 )
 """Constants of a pair."""
 
@@ -111,10 +112,37 @@ class Limits(NamedTuple):
     factor: float | np.ndarray = 1.0
 
 
-def in_columns(limits: np.ndarray, geometry: int) -> Limits:
-    """Limits (p, 4) of rows of constants as columns: friction, tension, cohesion and tan_fa."""
-    friction, tension, cohesion, tan_fa = np.ascontiguousarray(limits.T)
-    return Limits(friction, tension, cohesion, tan_fa, geometry)
+class RollingLimits(NamedTuple):
+    """`Limits` of contacts that also resist rolling, with the coefficient `rolling` of their largest moment.
+
+    Their kernels are compiled separately.
+    """
+
+    friction: float | np.ndarray
+    tension: float | np.ndarray
+    cohesion: float | np.ndarray
+    tan_fa: float | np.ndarray
+    rolling: float | np.ndarray
+    geometry: int
+    factor: float | np.ndarray = 1.0
+
+
+AnyLimits = Limits | RollingLimits
+"""Limits of contacts and bonds; laws may have others."""
+
+
+def columns_of(limits: Any) -> tuple[Any, ...]:
+    """Friction, strengths and, where contacts resist rolling, their coefficient: all limits before the geometry."""
+    return tuple(limits[: limits._fields.index("geometry")])
+
+
+def in_columns(limits: np.ndarray, geometry: int) -> AnyLimits:
+    """Limits (p, 4) or, of contacts that resist rolling, (p, 5) of rows of constants as columns, see `columns_of`."""
+    columns = np.ascontiguousarray(limits.T)
+    friction, tension, cohesion, tan_fa = columns[:4]
+    if len(columns) == 4:
+        return Limits(friction, tension, cohesion, tan_fa, geometry)
+    return RollingLimits(friction, tension, cohesion, tan_fa, columns[4], geometry)
 
 
 class Law(ABC):
@@ -130,6 +158,7 @@ class Law(ABC):
     secant : force over displacement from no force over the stiffness of small motion, normal and in shear.
     strengths : names of the limits at which bonds break. relaxes : whether intact bonds may have relaxation arms
     (kernels/arms.py), for which the forces of closed contacts and of bonds must be linear, and a quality factor.
+    rolls : whether contacts without bonds may resist rolling, by the key rr_fric.
     keys : of [material] that it adds, all required under it; uses : names of others that it has a use for, None for
     all. elsewhere : its names in other codes. help : what contacts and bonds do under it, in a few words.
     """
@@ -140,6 +169,7 @@ class Law(ABC):
     starts_elastic: ClassVar[bool] = True
     strengths: ClassVar[tuple[str, ...]] = ("tension", "cohesion")
     relaxes: ClassVar[bool] = False
+    rolls: ClassVar[bool] = False
     secant: ClassVar[tuple[float, float]] = (1.0, 1.0)
     keys: ClassVar[tuple[Key, ...]] = ()
     uses: ClassVar[tuple[str, ...] | None] = None
@@ -180,9 +210,10 @@ class Law(ABC):
 
     def moduli(self, given: Any) -> Moduli:
         """Micro-parameters of a material with given moduli, a table [material]."""
-        return Moduli(given.emod, given.pb_emod, given.kratio, given.pb_kratio, given.pb_rmul, given.fric)
+        keys = (field.name for field in fields(Moduli))
+        return Moduli(**{key: getattr(given, key) for key in keys})
 
-    def limits(self, strength: Limits) -> Any:
+    def limits(self, strength: AnyLimits) -> Any:
         """What the functions of the law get of the limits of a material; they are found by its type."""
         return strength
 
@@ -201,9 +232,10 @@ class Law(ABC):
         """Normal and shear stiffnesses (p, 2) N/m of pairs from which the viscosity of their dashpots follows."""
         return constants[:, [int(K.kn), int(K.ks)]]
 
-    def without_limits(self, geometry: int) -> Any:
-        """Limits that no contact or bond reaches, in a geometry of kernels/contacts.py."""
-        return Limits(0.0, np.inf, np.inf, 0.0, geometry)
+    def without_limits(self, geometry: int, *, rolls: bool = False) -> Any:
+        """Limits that no contact or bond reaches, in a geometry of kernels/contacts.py; rolls : of rolling contacts."""
+        strong = 0.0, np.inf, np.inf, 0.0
+        return RollingLimits(*strong, np.inf, geometry) if rolls else Limits(*strong, geometry)
 
     @abstractmethod
     def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
@@ -284,7 +316,7 @@ class Law(ABC):
                 has_bond * pair.bond_shear,
                 has_bond * pair.bending,
                 1.0 / pair.area,
-                1.5 / pair.bond_radius**2,  # R̄/J
+                moduli.pb_mcf * 1.5 / pair.bond_radius**2,  # pb_mcf R̄/J
             ]
         )
 

@@ -1,9 +1,13 @@
 """PFC's linear parallel-bond law: contacts without tension and with friction, bonds with a strength.
 
 A contact resists overlap and the part of the motion of its surfaces that has not slid, N = k_n a and S = k_s (s − slip)
-up to |S| = μN. A bond resists stretch e, shear s and rotation θ from the start, and breaks where σ + |M|R̄/J reaches
-pb_ten or |τ| reaches pb_coh − σ tan pb_fa, with σ = k̄_n e and τ = k̄_s s. At rest the stiffness is that of the elastic
-law, whose constants it has.
+up to |S| = μN. A bond resists stretch e, shear s and rotation θ from the start, and breaks where σ + pb_mcf |M|R̄/J
+reaches pb_ten or |τ| reaches pb_coh − σ tan pb_fa, with σ = k̄_n e and τ = k̄_s s. At rest the stiffness is that of the
+elastic law, whose constants it has.
+
+With rr_fric a closed contact without a bond also resists rolling, as PFC's rolling resistance linear model: by a moment
+k_r times the rotation that has not slid, k_r = k_s R̄², up to rr_fric R̄ N, with R̄ = R₁R₂/(R₁ + R₂) (J. Ai et al.,
+Powder Technology 206, 2011, model C without its damper).
 """
 
 from typing import ClassVar
@@ -11,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 
 from dembound.laws.elastic import Elastic
-from dembound.laws.law import K, Limits
+from dembound.laws.law import AnyLimits, K, Limits, RollingLimits
 from dembound.pairwise import at_most, is_pair_law, limit_of, magnitude
 
 
@@ -21,6 +25,7 @@ class LinearPBond(Elastic):
     name: ClassVar[str] = "linearpbond"
     has_history: ClassVar[bool] = True
     relaxes: ClassVar[bool] = True
+    rolls: ClassVar[bool] = True
     elsewhere: ClassVar[tuple[str, ...]] = (
         "linear_parallel_bond",
         "parallel_bond",
@@ -34,6 +39,12 @@ class LinearPBond(Elastic):
     def linear(self) -> str:
         """Name of the elastic law."""
         return Elastic.name
+
+    def limits(self, strength: AnyLimits) -> AnyLimits:
+        """All limits, but without rolling if contacts do not resist it."""
+        if isinstance(strength, Limits) or np.any(strength.rolling):
+            return strength
+        return Limits(**{name: value for name, value in strength._asdict().items() if name != "rolling"})
 
 
 def acts(limits, constants, k):
@@ -80,6 +91,23 @@ def breaks(limits, constants, k, kind, factor, pull, side, moment):
     return at_most(factor * limit_of(limits.tension, kind), edge), at_most(strength, sheared)
 
 
+def rolls(limits):
+    """See pair_law.rolls."""
+    return True
+
+
+def rolling(limits, constants, k):
+    """k_s R̄² and R̄ of disks that, if they overlap at the start, just touch there; see pair_law.rolling."""
+    offset, both = constants[k, K.offset], constants[k, K.touch]
+    radius = 0.25 * both - offset * offset / both
+    return constants[k, K.ks] * (radius * radius), radius
+
+
+def most_moment(limits, kind, radius, push):
+    """rr_fric R̄ N, see pair_law.most_moment."""
+    return limit_of(limits.rolling, kind) * (radius * push)
+
+
 def contact_energy(limits, constants, k, overlap, slid):
     """½k_n a² + ½k_s s², see pair_law.contact_energy."""
     return 0.5 * (constants[k, K.kn] * overlap * overlap + constants[k, K.ks] * slid * slid)
@@ -114,21 +142,15 @@ def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
     return min(torn, strength / (sheared + normal * pressed))
 
 
-is_pair_law(
-    Limits,
-    acts=acts,
-    normal=normal,
-    stored_between=stored_between,
-    shear_of=shear_of,
-    slip_at=slip_at,
-    most_shear=most_shear,
-    bond=bond,
-    breaks=breaks,
-    contact_energy=contact_energy,
-    bond_energy=bond_energy,
-    contact_room=contact_room,
-    bond_room=bond_room,
-)
+FUNCTIONS = {
+    each.__name__: each
+    for each in (
+        *(acts, normal, stored_between, shear_of, slip_at, most_shear, bond, breaks),
+        *(contact_energy, bond_energy, contact_room, bond_room),
+    )
+}
+is_pair_law(Limits, **FUNCTIONS)
+is_pair_law(RollingLimits, **FUNCTIONS, rolls=rolls, rolling=rolling, most_moment=most_moment)
 
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
@@ -138,7 +160,7 @@ BOND_LIMITS = 3
 """Number of the first limit of bonds, whose strengths scatter."""
 
 
-def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
+def limit_lines(constants: np.ndarray, limits: AnyLimits) -> tuple[np.ndarray, np.ndarray]:
     """Limits of pairs as lines a·e + b·s + c·θ ≤ d in their stretch e (m), shear s (m) and turn θ.
 
     A closed contact opens at k_n(e − e_0) = 0, one with a gap closes there, e_0 being its overlap at the start, and a

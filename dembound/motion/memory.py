@@ -50,6 +50,7 @@ BYTES: Mapping[str, Counts] = {
     "pairs_in_rows": {"disk": 24},  # places of disks
     "scatter": {"place": 8, "disk": 16},  # factors of strengths, tiles
     "dashpots": {"place": 32, "disk_slot": 8},  # with masses
+    "rolling": {"place": 8},  # rotation that has not slid
     "arms": {"arm": 24},  # lags of relaxation arms, of three components
     "listing": {
         "pair": 180,
@@ -72,6 +73,7 @@ BYTES: Mapping[str, Counts] = {
     "stress_field": {"disk": 24},
     "saved": {"disk": 48, "node": 48},  # a checkpoint: u and v (3)
     "saved_pairs": {"pair": 69},  # numbers, types, images, states, closed (13), shear, slip, step (24), forces (32)
+    "saved_rolling": {"pair": 8},
     "saved_arms": {"kept_arm": 24},
     "export": {"disk": 288},  # fields as read (84), points, vertices (52), in single (72), text of the largest (80)
     "export_stress": {"disk": 72},

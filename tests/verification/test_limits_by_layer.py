@@ -46,7 +46,7 @@ def run(lab, monkeypatch) -> Callable[..., Simulation]:
         if columns is not None:
             below, on_top = materials
             friction = np.where(heights > JOINT, on_top.fric, below.fric)
-            layers = limits_between([(below, on_top), (on_top, on_top)], types), friction
+            layers = limits_between([(below, on_top), (on_top, on_top)], types), friction, 0.0 * friction
         monkeypatch.setattr(scene_parts, "_layers", lambda *_: layers)
         simulation = Simulation(replace(scene, assembly=assembly), choose_step(scene)[0])
         (contacts,) = simulation.system.contacts.values()
@@ -120,3 +120,8 @@ def test_between_two_materials_the_smaller_limits_hold(lab) -> None:
     assert np.array_equal(np.array(found[:4]).T[:4], np.tile([alone[:4]], (4, 1)))
     assert np.array_equal(np.array(found[:4]).T[4:], np.tile([(0.1, *alone[1:4])], (2, 1)))
     assert found.geometry == alone.geometry
+
+    rolling = [lab.scene("A", (4.0, 4.0), material=BRITTLE | {"rr_fric": each}).case.material for each in (0.2, 0.4)]
+    found = limits_between([(rolling[1], rolling[0]), (rolling[1], rolling[1]), (one, rolling[1])], 1)
+    assert found.rolling.tolist() == [0.2, 0.4, 0.0]
+    assert np.array_equal(np.array(found[:4]).T, np.tile([alone[:4]], (3, 1)))

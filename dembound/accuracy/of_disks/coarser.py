@@ -24,8 +24,9 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.layer import Layer
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import STIFFNESS_KEYS, TARGET_KEYS, Material
+from dembound.casefile.disks.material import TARGET_KEYS, Material
 from dembound.casefile.disks.static import Static, can_break
+from dembound.casefile.disks.stiffness import STIFFNESS_KEYS
 from dembound.casefile.tables import ENDING
 from dembound.continuum import sizing
 from dembound.disks.material.case_material import nominal_moduli

@@ -24,7 +24,7 @@ from dembound.accuracy.of_disks.coarser import coarser
 from dembound.accuracy.of_disks.enlarged import ratios
 from dembound.accuracy.runner import Runner, at_step
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, STRENGTH_KEYS
+from dembound.casefile.disks.material import BOND_KEYS, HISTORY_KEYS, ROLLING_KEY, STRENGTH_KEYS
 from dembound.casefile.types import LAWS
 from dembound.disks.material.constants import bond_factors
 from dembound.disks.scene import DiskScene, build
@@ -96,10 +96,13 @@ def elastic_twin(
     """
     if not _may_be_elastic(case, planned.scene):
         return None
-    given = {key: value for key, value in case.material.given().items() if key not in HISTORY_KEYS}
+    kept_out = (*HISTORY_KEYS, ROLLING_KEY)
+    given = {key: value for key, value in case.material.given().items() if key not in kept_out}
     law = {"law": LAWS[case.material.law].linear}
-    strong = {"material": given | law, "output.load_factor": True}
+    rolling = {f"layer.{number}.{ROLLING_KEY}": None for number, each in enumerate(case.layer, start=1) if each.rr_fric}
+    strong = {"material": given | law, "output.load_factor": True} | rolling
     weak: dict[str, Any] = {"material": {key: value for key, value in given.items() if key not in BOND_KEYS} | law}
+    weak |= rolling
     for number, layer in enumerate(case.layer, start=1):
         weak |= {f"layer.{number}.{key}": None for key in BOND_KEYS if key in layer.given()}
     try:

@@ -7,14 +7,8 @@ from typing import Any, Literal
 
 from pydantic import ValidationError, model_validator
 
-from dembound.casefile.disks.material import (
-    MODULI_KEYS,
-    RATIO_KEYS,
-    STIFFNESS_KEYS,
-    TARGET_KEYS,
-    WAVE_SPEED_KEYS,
-    Material,
-)
+from dembound.casefile.disks.material import TARGET_KEYS, Material
+from dembound.casefile.disks.stiffness import MODULI_KEYS, RATIO_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS
 from dembound.casefile.disks.targets import PAIRS
 from dembound.casefile.messages import numbered, places, show
 from dembound.packings import Packing
@@ -65,9 +59,11 @@ class Layer(Table):
     kratio: float | None = _as_in_material("kratio")
     pb_kratio: float | None = _as_in_material("pb_kratio")
     fric: float | None = _as_in_material("fric")
+    rr_fric: float | None = _as_in_material("rr_fric")
     pb_ten: float | None = _as_in_material("pb_ten")
     pb_coh: float | None = _as_in_material("pb_coh")
     pb_fa: float | None = _as_in_material("pb_fa")
+    pb_mcf: float | None = _as_in_material("pb_mcf")
     quality_factor: float | None = _as_in_material("quality_factor")
     k0: float | None = quantity(
         None,

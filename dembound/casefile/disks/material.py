@@ -5,25 +5,31 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import create_model, model_validator
 
+from dembound.casefile.disks.stiffness import (
+    MODULI_KEYS,
+    RATIO_KEYS,
+    STIFFNESS_KEYS,
+    WAVE_SPEED_KEYS,
+    problems_with_moduli,
+    problems_with_speed,
+    problems_with_target,
+)
 from dembound.casefile.disks.targets import FIELDS, PAIRS, PlaneModuli, Scatter, Target, keys_problems, with_history
 from dembound.casefile.types import LAWS, LawName
 from dembound.table import Table, quantity
-
-WAVE_SPEED_KEYS = ("match", "contact_share")
-MODULI_KEYS = ("emod", "pb_emod")
-RATIO_KEYS = ("kratio", "pb_kratio")
-STIFFNESS_KEYS = (*(key for pair in PAIRS for key in pair), *MODULI_KEYS)
-"""Keys from which the moduli follow."""
 
 TARGET_KEYS = ("plane", "along")
 """Keys that say what targets of the body mean."""
 
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
-BOND_KEYS = (*STRENGTH_KEYS, "pb_fa", "pb_scatter")
+BOND_KEYS = (*STRENGTH_KEYS, "pb_fa", "pb_mcf", "pb_scatter")
 """Keys of the strengths of bonds, for history-dependent laws and load factors only."""
 
+ROLLING_KEY = "rr_fric"
+"""Key of contacts that resist rolling, for a history-dependent law that has it."""
+
 DASHPOT_KEYS = ("dp_nratio", "dp_sratio")
-HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS)
+HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS, "dp_on")
 """Keys for history-dependent laws only."""
 
 
@@ -34,8 +40,8 @@ class MaterialTable(Table):
     `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
     `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
     "linearpbond" is PFC's, and alone has `locked_in`, `geometry` and `elastic_start`. Strengths are for it and for
-    `output.load_factor`. Under "hertz" the stiffness follows from `hz_shear`, `hz_poiss` and the stress at rest,
-    `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
+    `output.load_factor`, and `rr_fric` for it. Under "hertz" stiffness follows from `hz_shear`, `hz_poiss` and the
+    stress at rest, `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
     density: float = quantity(
@@ -97,6 +103,13 @@ class MaterialTable(Table):
         help="friction coefficient of the contacts; at 0 they carry no shear",
         ge=0.0,
     )
+    rr_fric: float = quantity(
+        0.0,
+        unit="1",
+        means="friction coefficient",
+        help="resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric",
+        ge=0.0,
+    )
     pb_rmul: float = quantity(
         1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
     )
@@ -118,6 +131,11 @@ class MaterialTable(Table):
         help="shear dashpot of closed contacts over the critical one; needs fric",
         ge=0.0,
         le=1.0,
+    )
+    dp_on: Literal["unbonded", "all"] | None = quantity(
+        None,
+        unit="1",
+        help='contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break',
     )
     quality_factor: float | None = quantity(
         None,
@@ -144,6 +162,14 @@ class MaterialTable(Table):
     )
     pb_fa: float = quantity(
         0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
+    )
+    pb_mcf: float = quantity(
+        1.0,
+        unit="1",
+        means="share",
+        help="share of the moment that counts in the stress of bonds (PFC's moment contribution factor)",
+        ge=0.0,
+        le=1.0,
     )
     pb_scatter: Scatter | None = quantity(
         None,
@@ -175,10 +201,10 @@ class MaterialTable(Table):
         if law.uses is not None:
             problems += self._problems_with_dashpots() if self.has_dashpots else []
             return self._without(problems)
-        if len(self._pair) > 0:
-            problems += self._problems_with_target()
+        if len(self.pair) > 0:
+            problems += problems_with_target(self)
         else:
-            problems += self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+            problems += problems_with_moduli(self) if self.p_wave_speed is None else problems_with_speed(self)
             problems += [
                 f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
                 for key in TARGET_KEYS
@@ -189,6 +215,10 @@ class MaterialTable(Table):
             problems += self._problems_without_history()
         if self.has_dashpots:
             problems += self._problems_with_dashpots()
+        elif self.dp_on is not None:
+            problems.append("dp_on: is of dashpots of contacts, but there are none; give dp_nratio")
+        if self.rr_fric > 0.0:
+            problems += self._problems_with_rolling()
         if self.quality_factor is not None:
             problems += self._problems_with_quality()
         return self._without(problems)
@@ -199,24 +229,24 @@ class MaterialTable(Table):
             raise ValueError("\n".join(problems))
         return self
 
-    def _given(self, keys: Sequence[str]) -> list[str]:
+    def valued(self, keys: Sequence[str]) -> list[str]:
         """Those of some keys that have values."""
         return [key for key in keys if getattr(self, key) is not None]
 
     @property
     def by_s_waves(self) -> bool:
         """Whether the moduli follow from the S-wave speed alone."""
-        return self.s_wave_speed is not None and not self._given(("p_wave_speed", *MODULI_KEYS))
+        return self.s_wave_speed is not None and not self.valued(("p_wave_speed", *MODULI_KEYS))
 
     @property
-    def _pair(self) -> tuple[str, ...]:
+    def pair(self) -> tuple[str, ...]:
         """The keys that are targets, of a pair that may lack one; without targets none."""
-        return next((pair for pair in PAIRS if len(self._given(pair)) > (pair == PAIRS[2])), ())
+        return next((pair for pair in PAIRS if len(self.valued(pair)) > (pair == PAIRS[2])), ())
 
     @property
     def target(self) -> Target | None:
         """What is asked of the body, from which moduli and kratio follow; None if they are given otherwise."""
-        pair = self._pair
+        pair = self.pair
         if not pair:
             return None
         values = [getattr(self, key) for key in pair]
@@ -227,56 +257,32 @@ class MaterialTable(Table):
             moduli = of(values[0], values[1], self.plane)
         return Target((pair[0], pair[1]), moduli, self.along, self.plane)
 
-    def _problems_with_target(self) -> list[str]:
-        """Mistakes of a material given by elastic constants of the body."""
-        pair = self._pair
-        together = " and ".join(pair)
-        problems = [f"{key}: is missing; {together} go together" for key in pair if getattr(self, key) is None]
-        problems += [
-            f"{key}: is not allowed together with {together}, which give the stiffness"
-            for key in self._given(STIFFNESS_KEYS)
-            if key not in pair
-        ]
-        problems += [
-            f"{key}: is not allowed together with {together}, from which it is found"
-            for key in RATIO_KEYS
-            if key in self.model_fields_set
-        ]
-        if "match" in self.model_fields_set:
-            problems.append(
-                f"match: is only allowed together with p_wave_speed alone; {together} are those of the packing"
-            )
-        if pair == PAIRS[2]:
-            if "plane" in self.model_fields_set:
-                problems.append("plane: is only allowed together with young and poisson, or bulk and shear")
-            p_speed, s_speed = self.p_wave_speed, self.s_wave_speed
-            if s_speed is not None and p_speed is not None and s_speed >= p_speed:
-                problems.append(f"s_wave_speed: is {s_speed:g}, must be less than p_wave_speed")
-        if pair == PAIRS[1] and self.along != "isotropic":
-            problems.append('along: is of waves or of a test; with bulk and shear it must be "isotropic"')
-        if self.poisson is not None and self.plane == "strain" and self.poisson >= 0.5:
-            problems.append(
-                f'poisson: is {self.poisson:g}, must be less than 0.5; a 2D sample (plane = "stress") may have it'
-            )
-        if self.fric == 0.0 and self.contact_share == 1.0:
-            problems.append("contact_share: is 1, so without friction nothing carries shear; give less, or fric > 0")
-        return problems
-
     @property
     def has_dashpots(self) -> bool:
         """Whether contacts have dashpots."""
         return max(self.dp_nratio, self.dp_sratio) > 0.0
 
     @property
+    def rolls(self) -> bool:
+        """Whether contacts resist rolling from the start, as there are no bonds."""
+        return self.rr_fric > 0.0 and self.no_bonds is not None
+
+    @property
     def begins_elastic(self) -> bool:
-        """Whether the elastic law serves first in place of a history-dependent one; it has no dashpots."""
-        return self.elastic_start and not self.has_dashpots and LAWS[self.law].starts_elastic
+        """Whether the elastic law may serve first in place of a history-dependent one, see the case's."""
+        return self.elastic_start and LAWS[self.law].starts_elastic
+
+    @property
+    def damps_bonds(self) -> bool:
+        """Whether dashpots of contacts also act beside intact bonds, if no layer's bonds have a strength."""
+        return self.dp_on == "all" or (self.dp_on is None and not self.valued(STRENGTH_KEYS))
 
     def _problems_with_dashpots(self) -> list[str]:
         """What dashpots of contacts do not go with."""
         problems = []
         given = [key for key in DASHPOT_KEYS if getattr(self, key) > 0.0]
-        if self.elastic_start and "elastic_start" in self.model_fields_set:
+        at_once = self.damps_bonds or self.no_bonds is not None
+        if at_once and self.elastic_start and "elastic_start" in self.model_fields_set:
             problems.append(f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out")
         if self.emod == 0.0 or self.contact_share == 0.0:
             none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
@@ -285,24 +291,16 @@ class MaterialTable(Table):
             problems.append("dp_sratio: is of the shear of contacts, but fric = 0 leaves them none")
         return problems
 
-    def _problems_with_speed(self) -> list[str]:
-        """Mistakes of a material given by its P-wave speed."""
-        why = "is not allowed together with p_wave_speed, which gives the moduli"
-        return [f"{key}: {why}" for key in self._given(MODULI_KEYS)]
-
-    def _problems_with_moduli(self) -> list[str]:
-        """Mistakes of a material without a P-wave speed."""
-        missing = [key for key in MODULI_KEYS if getattr(self, key) is None]
-        by_speed = len(missing) == 2
-        if by_speed and self.s_wave_speed is None:
-            return [
-                "p_wave_speed: is missing; give either p_wave_speed, s_wave_speed, young and poisson, bulk and shear, "
-                "or emod and pb_emod"
-            ]
-        problems = [] if by_speed else [f"{key}: is missing; emod and pb_emod go together" for key in missing]
-        for key in ("match",) if by_speed else WAVE_SPEED_KEYS:
-            if key in self.model_fields_set:
-                problems.append(f"{key}: is only allowed together with p_wave_speed")
+    def _problems_with_rolling(self) -> list[str]:
+        """What resistance to rolling does not go with."""
+        problems = []
+        if self.fric == 0.0:
+            problems.append(f"{ROLLING_KEY}: is of contacts with a shear stiffness, but fric = 0 leaves them none")
+        if self.emod == 0.0 or self.contact_share == 0.0:
+            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
+            problems.append(f"{ROLLING_KEY}: is of contacts, but {none} leaves them no stiffness")
+        if self.rolls and self.elastic_start and "elastic_start" in self.model_fields_set:
+            problems.append(f"elastic_start: is true, but contacts resist rolling ({ROLLING_KEY}) from the start")
         return problems
 
     def _problems_without_history(self) -> list[str]:
@@ -315,7 +313,7 @@ class MaterialTable(Table):
         problems, law = [], LAWS[self.law]
         if law.has_history and not law.relaxes:
             problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
-        if law.has_history and (none := self._no_bonds):
+        if law.has_history and (none := self.no_bonds):
             problems.append(f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none')
         if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
             problems.append("elastic_start: is true, but quality_factor damps bonds from the start; leave it out")
@@ -330,13 +328,15 @@ class MaterialTable(Table):
             problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
         if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
             problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
-        if none := self._no_bonds:
-            strengths = self._given(STRENGTH_KEYS)
+        if "pb_mcf" in self.model_fields_set and self.pb_ten is None:
+            problems.append("pb_mcf: is of the stress that pb_ten limits; give pb_ten")
+        if none := self.no_bonds:
+            strengths = self.valued(STRENGTH_KEYS)
             problems += [f"{key}: is the strength of bonds, but {none} leaves none" for key in strengths]
         return problems
 
     @property
-    def _no_bonds(self) -> str | None:
+    def no_bonds(self) -> str | None:
         """The key that leaves no bonds, with its value; None with bonds."""
         return "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
 

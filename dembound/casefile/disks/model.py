@@ -13,7 +13,7 @@ from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
+from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, can_break, intact_depths
 from dembound.casefile.disks.wall import Wall
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
@@ -99,7 +99,24 @@ class DiskCase(Case):
     @property
     def begins_elastic(self) -> bool:
         """Whether the elastic law serves first in place of a history-dependent one."""
-        return self.material.begins_elastic and not (self.relaxes or self.wall)
+        at_once = bool(self.relaxes or self.rolls or self.dashes_at_once or self.wall)
+        return self.material.begins_elastic and not at_once
+
+    @property
+    def damps_bonds(self) -> bool:
+        """Whether dashpots of contacts also act beside intact bonds."""
+        return self.material.damps_bonds and not (self.material.dp_on is None and can_break(self.materials))
+
+    @property
+    def dashes_at_once(self) -> bool:
+        """Whether dashpots of contacts act from the start."""
+        loose = any(material.no_bonds is not None for material in self.materials)
+        return self.material.has_dashpots and (self.damps_bonds or loose)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether contacts without bonds resist rolling from the start."""
+        return any(material.rolls for material in self.materials)
 
     @property
     def joints(self) -> tuple[float, ...]:

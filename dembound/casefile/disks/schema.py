@@ -20,7 +20,7 @@ from dembound.casefile.disks.incident import (
 )
 from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
-from dembound.casefile.disks.material import BOND_KEYS, Material
+from dembound.casefile.disks.material import BOND_KEYS, ROLLING_KEY, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
 from dembound.casefile.disks.monitor_rows import MonitorTable, without_rows
 from dembound.casefile.disks.static import Static, static_problems
@@ -96,6 +96,11 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):
             for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
                 yield from _no_strength(place, table)
+    if tables["material"] and not LAWS[tables["material"].law].rolls:
+        allowed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.rolls)
+        for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+            if ROLLING_KEY in table.model_fields_set:
+                yield f"{place}.{ROLLING_KEY}: is only allowed with law = {allowed}"
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         whole = bool(tables["packing"] and tables["ground"])  # else it is not known whether its ground has two heights

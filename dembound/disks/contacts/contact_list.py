@@ -1,6 +1,7 @@
 """The pairs of a scene: particles in contact or nearly in contact, listed anew as particles move."""
 
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from dembound.disks.material.constants import BondFactors, brick_constants, limi
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
 from dembound.kernels.contacts import REFERENCE, SHEAR, TENSION
-from dembound.laws.law import Limits
+from dembound.laws.law import AnyLimits, columns_of
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
@@ -43,7 +44,7 @@ class ContactList(RenewedList):
         follow the particles, are not among them, as a static stage may have fewer of them.
     plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
     layers : in layered ground the limits of each type of contact in columns, see `limits_between`, and the friction
-        (m,) of each particle, for those that meet later.
+        and the resistance to rolling (m,) of each particle, for those that meet later.
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
@@ -71,7 +72,7 @@ class ContactList(RenewedList):
         held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
         layout: Layout | None = None,
         plan: tuple[RowPlan, int] | None = None,
-        layers: tuple[Limits, np.ndarray] | None = None,
+        layers: tuple[AnyLimits, np.ndarray, np.ndarray] | None = None,
         at_rest: AtRest | None = None,
         factors: BondFactors | None = None,
         dashpots: Dashpots | None = None,
@@ -81,7 +82,7 @@ class ContactList(RenewedList):
         super().__init__(assembly, periods, begin, layout)
         self.ground, self.factors, self.dashpots, self.lags = ground, factors, dashpots, lags
         self.limits = limits_of(material) if layers is None else layers[0]
-        self._friction = None if layers is None else layers[1]
+        self._friction, self._rolling = (None, np.zeros(0)) if layers is None else layers[1:]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
@@ -91,7 +92,7 @@ class ContactList(RenewedList):
         self.keeps_slip = False
         constants = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         if layers is not None:
-            constants = np.column_stack([constants, *self.limits[:4]])
+            constants = np.column_stack([constants, *columns_of(self.limits)])
         self.bonds, self.kind, self._begun_slip = stressed(ground, constants, assembly, at_rest)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[self.kind, :2]), self.kind)
@@ -177,6 +178,7 @@ class ContactList(RenewedList):
         first, second = first[left], second[left]
         pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
         history = ContactHistory(*(other.of(name)[left] for name in (*HISTORY, "place")))
+        history = history._replace(rolled=other.of("rolled")[left] if self.rolls else None)
         self._list(pairs, history._replace(kept=self._kept(first, second, other.of("kept")[left])))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
@@ -189,7 +191,7 @@ class ContactList(RenewedList):
         pairs = self.arrays
         first, second = (twin[particles] for particles in self.pairs)
         found, at = column.find(first, second, self._constants[self.of("contact_type"), :2])
-        for name in ("state", "shear", "slip"):
+        for name in ("state", "shear", "slip", *(("rolled",) if self.rolls else ())):
             getattr(pairs, name)[self.live[found]] = column.of(name)[at[found]]
         pairs.cracked[(pairs.state == TENSION) | (pairs.state == SHEAR)] = 0
         first, second = self.pairs
@@ -213,6 +215,8 @@ class ContactList(RenewedList):
             saved["drag"] = self.drag
         if self.lags > 0:
             saved["lag"] = self.lag
+        if self.rolls:
+            saved["rolled"] = self.of("rolled")
         saved["retired"] = self.retired
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
@@ -232,9 +236,9 @@ class ContactList(RenewedList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])
-        history = ContactHistory(
-            **{name: saved[name] for name in HISTORY}, drag=saved.get("drag"), lag=saved.get("lag")
-        )
+        history = ContactHistory(**{name: saved[name] for name in HISTORY})
+        more: dict[str, Any] = {name: saved.get(name) for name in ("drag", "lag", "rolled")}
+        history = history._replace(**more)
         pushed = saved["force"].any(axis=1) & (history.closed == kernel.OPEN)  # as earlier versions wrote it
         closed = np.where(pushed, kernel.CLOSED, history.closed).astype(np.uint8)
         self._list(pairs, history._replace(closed=closed, force=saved["force"]))

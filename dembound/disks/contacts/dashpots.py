@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
@@ -15,18 +16,24 @@ from dembound.pairwise import P
 
 @dataclass(frozen=True, eq=False)
 class Dashpots:
-    """The dashpots of a part's contacts: normal and shear ratio, mass (m,) kg of its disks by slot, and the law."""
+    """The dashpots of a part's contacts: normal and shear ratio, mass (m,) kg of its disks by slot, and the law.
+
+    damps_bonds : whether they also act beside intact bonds.
+    """
 
     normal: float
     shear: float
     mass: np.ndarray
     law: Law
+    damps_bonds: bool
 
     @classmethod
-    def of(cls, material: Material, mass: np.ndarray) -> "Dashpots | None":
-        """The dashpots of a material; None if it has none."""
-        own = LAWS[material.law]
-        return cls(material.dp_nratio, material.dp_sratio, mass, own) if material.has_dashpots else None
+    def of(cls, case: DiskCase, mass: np.ndarray) -> "Dashpots | None":
+        """The dashpots of the contacts of a case; None if it has none."""
+        material, own = case.material, LAWS[case.material.law]
+        if not material.has_dashpots:
+            return None
+        return cls(material.dp_nratio, material.dp_sratio, mass, own, case.damps_bonds)
 
     def at(self, contacts: Contacts) -> np.ndarray:
         """Viscosities (2, b) N·s/m in all places of contacts, 0 where there is none."""

@@ -11,7 +11,7 @@ from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import REACHED
 from dembound.kernels.listing import keys_of, sorted_into
 from dembound.kernels.tables.contacts import Cells, PairRows
-from dembound.laws.law import Limits, in_columns
+from dembound.laws.law import AnyLimits, RollingLimits, in_columns
 from dembound.motion.state import Layout, aligned_zeros
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import STRAIN
@@ -41,8 +41,8 @@ def cells_of(
     return Cells(start, member, count, wraps, reach)
 
 
-NO_LIMITS = np.array([[0.0, np.inf, np.inf, 0.0]])
-"""Limits of a place without a pair."""
+NO_LIMITS = np.array([[0.0, np.inf, np.inf, 0.0, 0.0]])
+"""Limits of a place without a pair; the last one only where contacts resist rolling."""
 
 
 class PairList:
@@ -64,14 +64,14 @@ class PairList:
     gaps of pairs are listed.
     cells : of the particles there.
     ground : whose law says how many constants of it a pair has.
-    bonds : constants of the contacts of the brick, with the four limits of each in layers, see `ContactList.limits`.
+    bonds : constants of the contacts of the brick, with the limits of each in layers, see `ContactList.limits`.
     own_types : number of the types of the brick's contacts, which come before those of near pairs. factors : of the
     strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none. lags : numbers by which the
     relaxation arms of a bond lag behind; 0 without arms.
     """
 
     ground: PackedMaterial
-    limits: Limits
+    limits: AnyLimits
     own_types: int
     factors: BondFactors | None
     dashpots: Dashpots | None
@@ -105,6 +105,11 @@ class PairList:
     def of(self, name: str) -> np.ndarray:
         """A column of `arrays` for the live pairs, (b,) or (b, …)."""
         return getattr(self.arrays, name)[self.live]
+
+    @property
+    def rolls(self) -> bool:
+        """Whether contacts without bonds resist rolling."""
+        return isinstance(self.limits, RollingLimits)
 
     @property
     def image(self) -> np.ndarray:
@@ -164,7 +169,7 @@ class PairList:
         """Give the pairs their places, with room for so many in no row, and list their contact ends."""
         constants, columns = np.split(self._constants, [self.ground.law.width + STRAIN], axis=1)
         if columns.size > 0:
-            columns = np.vstack([columns, NO_LIMITS])  # of places without a pair
+            columns = np.vstack([columns, NO_LIMITS[:, : columns.shape[1]]])  # of places without a pair
             self.limits = in_columns(columns, self.limits.geometry)
         placed = in_places(pairs, history, self._slot, constants, self._plan, room)
         self.arrays, self.live, self._in_rows = placed.arrays, placed.live, placed.in_rows
@@ -176,9 +181,12 @@ class PairList:
         if self.dashpots is not None:
             viscosity = self.dashpots.at(self.arrays)
             drag = self.arrays.drag if history.drag is not None else np.zeros_like(viscosity)
-            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag)
+            damps_bonds = self.dashpots.damps_bonds
+            self.arrays = self.arrays._replace(viscosity=viscosity, drag=drag, damps_bonds=damps_bonds)
         if self.lags > 0 and history.lag is None:
             self.arrays = self.arrays._replace(lag=aligned_zeros(self.lags, len(self.arrays.first)))
+        if self.rolls and history.rolled is None:
+            self.arrays = self.arrays._replace(rolled=aligned_zeros(len(self.arrays.first)))
         if self._plan is not None:
             self.rows = self._plan.rows(self.live[: self._in_rows], constants)
             self.extra = aligned_zeros(3, self.layout.count)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dembound.disks.contacts.placing import NO_ARMS, NO_DASHPOTS
+from dembound.disks.contacts.placing import NO_ARMS, NO_DASHPOTS, NO_ROLLING
 from dembound.disks.material.at_rest import AtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
@@ -205,6 +205,7 @@ def plain_contacts(
         force=np.zeros((4, 0)),
         **NO_DASHPOTS,
         **NO_ARMS,
+        **NO_ROLLING,
         start=first[:0],
         end=first[:0],
         bound=np.linspace(0, len(first), CHUNKS + 1).astype(np.int64),

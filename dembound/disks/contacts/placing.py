@@ -16,11 +16,14 @@ from dembound.kernels.tables.contacts import Contacts
 from dembound.motion.state import aligned_zeros
 from dembound.pairwise import of_law
 
-NO_DASHPOTS: dict[str, Any] = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0))}
+NO_DASHPOTS: dict[str, Any] = {"viscosity": np.zeros((2, 0)), "drag": np.zeros((2, 0)), "damps_bonds": True}
 """Fields of `Contacts` without dashpots."""
 
 NO_ARMS: dict[str, Any] = {"lag": np.zeros((0, 0))}
 """Fields of `Contacts` without relaxation arms."""
+
+NO_ROLLING: dict[str, Any] = {"rolled": np.zeros(0)}
+"""Field of `Contacts` where no contact resists rolling."""
 
 
 NOTHING = np.array([1e6, 0.0, 1e6, -1e100, 0.0])
@@ -41,7 +44,7 @@ class ContactHistory(NamedTuple):
     """The history variables of pairs (b,), see `Contacts`; place (b, 2): None without broken bonds.
 
     kept : None where all bonds may break. force (b, 4), and drag (b, 2) N; None before they have acted. lag : (b, 3K);
-    None before relaxation arms have acted, or without any.
+    None before relaxation arms have acted, or without any. rolled : None before contacts roll, or where none resists.
     """
 
     state: np.ndarray
@@ -54,6 +57,7 @@ class ContactHistory(NamedTuple):
     force: np.ndarray | None = None
     drag: np.ndarray | None = None
     lag: np.ndarray | None = None
+    rolled: np.ndarray | None = None
 
 
 class Placed(NamedTuple):
@@ -132,6 +136,7 @@ def in_places(
         force=aligned_zeros(4, count),
         **NO_DASHPOTS,
         **NO_ARMS,
+        **NO_ROLLING,
         start=np.zeros(0, np.uint32),
         end=np.zeros(0, np.uint32),
         bound=np.zeros(0, np.int64),
@@ -146,6 +151,8 @@ def in_places(
         lag = aligned_zeros(history.lag.shape[1], count)
         lag[:, live] = history.lag[order].T
         arrays = arrays._replace(lag=lag)
+    if history.rolled is not None:
+        arrays = arrays._replace(rolled=placed(history.rolled[order]))
     arrays = with_ends(arrays, keys[shared:], places, stop)
     return Placed(arrays, live, shared, placed(pairs.image[order]), keys)
 

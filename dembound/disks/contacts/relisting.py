@@ -12,6 +12,7 @@ from dembound.kernels import contacts as kernel
 from dembound.kernels.contacts import NONE, SHEAR
 from dembound.kernels.listing import merged
 from dembound.kernels.near import near_keys, pairs_of, room
+from dembound.laws.law import columns_of
 from dembound.motion.part import Cracks
 from dembound.pairwise import STRAIN, of_law
 
@@ -30,6 +31,7 @@ class RenewedList(PairList):
     locked_in: float
     retired: np.ndarray
     _friction: np.ndarray | None
+    _rolling: np.ndarray
     _built: Pairs
     _built_keys: np.ndarray
     _built_order: np.ndarray
@@ -119,8 +121,9 @@ class RenewedList(PairList):
         both_radii, locked_in = (radii[first], radii[second]), self.locked_in
         constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
         if self._friction is not None:
-            limits = np.repeat(NO_LIMITS, len(first), axis=0)
+            limits = np.repeat(NO_LIMITS[:, : len(columns_of(self.limits))], len(first), axis=0)
             limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
+            limits[:, 4:] = np.minimum(self._rolling[first], self._rolling[second])[:, None]
             constants = np.column_stack([constants, limits])
         row_of = np.arange(len(constants))
         if shares:
@@ -158,6 +161,8 @@ class RenewedList(PairList):
             columns += [(arrays.viscosity, viscosity, 0), (arrays.drag, 0, 0)]
         if self.lags > 0:
             columns.append((arrays.lag, 0, 0))
+        if self.rolls:
+            columns.append((arrays.rolled, 0, 0))
         if self.factors is not None:
             factors = self._factors_of(self.factors, met.first, met.contact_type)
             columns.append((np.asarray(self.limits.factor), factors, 1))
@@ -172,7 +177,8 @@ class RenewedList(PairList):
         """All pairs with their history."""
         history = ContactHistory(*(self.of(name) for name in (*HISTORY, "place")))
         drag = None if self.dashpots is None else self.drag
-        history = history._replace(force=self.force, drag=drag, lag=self.lag if self.lags > 0 else None)
+        rolled = self.of("rolled") if self.rolls else None
+        history = history._replace(force=self.force, drag=drag, lag=self.lag if self.lags > 0 else None, rolled=rolled)
         return Pairs(*self.pairs, self.image, self.of("contact_type")), history
 
     @property

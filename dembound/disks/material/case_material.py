@@ -85,4 +85,5 @@ def nominal_moduli(material: Material) -> Moduli:
         emod, pb_emod = lattice_moduli(material.density, speed, material.contact_share, material.pb_rmul)
     else:
         return LAWS[material.law].moduli(material)
-    return Moduli(emod, pb_emod, material.kratio, material.pb_kratio, material.pb_rmul, material.fric)
+    ratios = material.kratio, material.pb_kratio, material.pb_rmul, material.fric, material.pb_mcf
+    return Moduli(emod, pb_emod, *ratios)

@@ -12,7 +12,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
-from dembound.laws.law import Limits, Stiffness, in_columns
+from dembound.laws.law import AnyLimits, RollingLimits, Stiffness, columns_of, in_columns
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import PLACE
@@ -48,42 +48,52 @@ def _distance(brick: Brick, axis: int, diameter: float) -> float:
     return float(distances.min()) if len(distances) else float("nan")
 
 
-def strength_of(material: Material) -> Limits:
-    """Strengths and friction of a material in the geometry of the start, whatever its law."""
-    return Limits(
+def strength_of(material: Material) -> RollingLimits:
+    """Strengths, friction and rolling resistance of a material in the geometry of the start, whatever its law."""
+    return RollingLimits(
         friction=float(material.fric),
         tension=np.inf if material.pb_ten is None else material.pb_ten,
         cohesion=np.inf if material.pb_coh is None else material.pb_coh,
         tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
+        rolling=float(material.rr_fric),
         geometry=REFERENCE,
     )
 
 
-def limits_of(material: Material) -> Limits:
+def limits_of(material: Material) -> AnyLimits:
     """Limits of contacts under their law; infinite for bonds under a law that is not history-dependent."""
     strength = strength_of(material)
     if not LAWS[material.law].has_history:
         return strength._replace(tension=np.inf, cohesion=np.inf)
     geometry = {"updated": UPDATED, "reference": BONDED}[material.geometry]
-    found: Limits = LAWS[material.law].limits(strength._replace(geometry=geometry))
+    found: AnyLimits = LAWS[material.law].limits(strength._replace(geometry=geometry))
     return found
 
 
 def limits_between(
-    pairings: Iterable[tuple[Material, Material]], types: int, of: Callable[[Material], Limits] = limits_of
-) -> Limits:
+    pairings: Iterable[tuple[Material, Material]], types: int, of: Callable[[Material], AnyLimits] = limits_of
+) -> AnyLimits:
     """Columns (p,) of the limits of contacts between two materials: `types` rows for each pairing, in their order.
 
-    The smaller friction and tensile strength hold, and the line of shear strength with the smaller cohesion. of :
-    `limits_of` or `strength_of`.
+    The smaller friction, resistance to rolling and tensile strength hold, and the line of shear strength with the
+    smaller cohesion. of : `limits_of` or `strength_of`.
     """
-    rows = [_weaker(of(one), of(other)) for one, other in pairings]
-    return in_columns(np.repeat([row[:4] for row in rows], types, axis=0), rows[0].geometry)
+    rows = [_weaker(_in_full(of(one)), _in_full(of(other))) for one, other in pairings]
+    columns = np.repeat([columns_of(row) for row in rows], types, axis=0)
+    rolls = bool(columns[:, RollingLimits._fields.index("rolling")].any())
+    return in_columns(columns if rolls else columns[:, :-1], rows[0].geometry)
+
+
+def _in_full(limits: AnyLimits) -> RollingLimits:
+    """Limits with a resistance to rolling, which may be 0."""
+    if isinstance(limits, RollingLimits):
+        return limits
+    return RollingLimits(**{**limits._asdict(), "rolling": 0.0})
 
 
 def ground_limits(
-    ground: PackedMaterial, materials: Sequence[Material], of: Callable[[Material], Limits] = limits_of
-) -> Limits:
+    ground: PackedMaterial, materials: Sequence[Material], of: Callable[[Material], AnyLimits] = limits_of
+) -> AnyLimits:
     """Limits of the contacts of a ground: numbers, in layered ground columns by their types, see `limits_between`.
 
     materials : of its layers from the surface down.
@@ -95,10 +105,10 @@ def ground_limits(
     return limits_between(pairings, 2 * len(ground.brick.pairs), of)
 
 
-def _weaker(one: Limits, other: Limits) -> Limits:
+def _weaker(one: RollingLimits, other: RollingLimits) -> RollingLimits:
     """Limits of contacts between materials of two limits."""
     sheared = min(one, other, key=lambda each: (each.cohesion, each.tan_fa))
-    least = {name: min(getattr(one, name), getattr(other, name)) for name in ("friction", "tension")}
+    least = {name: min(getattr(one, name), getattr(other, name)) for name in ("friction", "tension", "rolling")}
     return sheared._replace(**least)
 
 

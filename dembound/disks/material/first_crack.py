@@ -101,7 +101,7 @@ def _first(
     """The multiple of a load, with these elongations (b,), at which the first bond breaks; None if none does."""
     limits = strength_of(material)
     pulled = springs.bond_normal * stretch / springs.area
-    bent = np.abs(springs.bending * turn) * 1.5 / springs.bond_radius**2
+    bent = material.pb_mcf * np.abs(springs.bending * turn) * 1.5 / springs.bond_radius**2
     sheared = np.abs(springs.bond_shear * slip) / springs.area + limits.tan_fa * pulled
     largest = {"tension": (pulled + bent).max(), "shear": sheared.max()}
     strength = {"tension": limits.tension, "shear": limits.cohesion}

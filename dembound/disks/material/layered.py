@@ -145,6 +145,7 @@ class LayeredGround(PackedMaterial):
     ) -> np.ndarray:
         """Constants (b, c + 3) of pairs, see `PackedMaterial.pair_constants`."""
         found, stiff = np.empty((len(vectors), self.law.width + STRAIN)), self.law.stiff
+        stresses = [number for number, each in enumerate(self.law.columns) if each.in_half == 2.0]
         ends = np.stack([np.broadcast_to(zone, len(vectors)) for zone in zones], axis=1)
         for pair in np.unique(ends, axis=0):
             chosen = (ends == pair).all(axis=1)
@@ -161,6 +162,7 @@ class LayeredGround(PackedMaterial):
             found[chosen] = one
             if pair[0] != pair[1]:
                 found[np.ix_(chosen, stiff)] = _in_series(one[:, stiff], other[:, stiff])
+                found[np.ix_(chosen, stresses)] = np.maximum(one[:, stresses], other[:, stresses])
         return found
 
     @cached_property

@@ -28,10 +28,12 @@ def never_elastic_again(case: DiskCase) -> str:
         return "there is no static stage"
     if not LAWS[material.law].starts_elastic:
         return f'contacts under material.law = "{material.law}" are stiffer the more they overlap'
-    if material.has_dashpots:
+    if case.dashes_at_once:
         return "contacts have dashpots"
     if case.wall:
         return "disks touch walls, which the elastic law does not include"
+    if case.rolls:
+        return "contacts without bonds resist rolling"
     if case.relaxes:
         return "bonds have relaxation arms, by which their ground is damped"
     if not material.elastic_start:
@@ -112,8 +114,8 @@ def first_law(scene: DiskBody, disks: DiskParts, start: Start | None, datum: np.
     built_in = case.material.locked_in is not None or case.begins_stressed
     through = bool(disks.seams) and built_in and not settling
     slides = scene.at_rest is not None and scene.at_rest.slides
-    never = not scene.ground.law.starts_elastic
-    at_once = through or slides or never or bool(case.wall) or not (settling or case.begins_elastic)
+    never = not scene.ground.law.starts_elastic or case.rolls or bool(case.wall)
+    at_once = through or slides or never or not (settling or case.begins_elastic)
     return FirstLaw(goes_on or (scene.has_history and at_once), goes_on, is_elastic_again, refused)
 
 

@@ -19,7 +19,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.start_strain import began_of
 from dembound.kernels.load_factor import least_factors
-from dembound.laws.law import in_columns
+from dembound.laws.law import columns_of, in_columns
 from dembound.laws.linearpbond import BOND_LIMITS, limit_in_words, limit_lines
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
@@ -52,7 +52,7 @@ class LoadFactor(Every):
         plain = brick_constants(scene.ground, gaps_close=True, locked_in=0.0)
         limits = ground_limits(scene.ground, scene.case.materials, strength_of)
         if scene.ground.is_layered:
-            plain = np.column_stack([plain, *limits[:4]])
+            plain = np.column_stack([plain, *columns_of(limits)])
         self._pairs = []
         for part in system.disks.parts:
             constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest_of(part.name))

@@ -160,7 +160,8 @@ class DiskPart(Part):
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
-        limits = self.ground.law.without_limits(self.geometry)
+        rolls = self.contacts is not None and self.contacts.rolls and self.uses_history
+        limits = self.ground.law.without_limits(self.geometry, rolls=rolls)
         in_contacts, in_bonds = strain_energy(u, self.pairs, limits)
         if self.arms is not None:
             in_bonds += arms_energy(self.pairs, limits, self.arms)

@@ -26,7 +26,7 @@ from dembound.disks.surroundings.jump import nodes_on_slit
 from dembound.kernels.contacts import UPDATED
 from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
-from dembound.laws.law import Limits
+from dembound.laws.law import AnyLimits
 from dembound.motion.part import Tie
 from dembound.motion.state import Layout
 from dembound.packings.tiling import Assembly
@@ -84,19 +84,20 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         _layers(scene, part),
         scene.at_rest_of(name),
         bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
-        Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
+        Dashpots.of(scene.case, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
         3 * arms_per_bond(scene),
     )
 
 
-def _layers(scene: DiskBody, part: Assembly) -> tuple[Limits, np.ndarray] | None:
-    """In layered ground the limits of contacts in columns and the friction of each particle; None in other ground."""
+def _layers(scene: DiskBody, part: Assembly) -> tuple[AnyLimits, np.ndarray, np.ndarray] | None:
+    """Limits of contacts in columns, friction and resistance to rolling of each particle, in layered ground only."""
     ground, materials = scene.ground, scene.case.materials
     if not isinstance(ground, LayeredGround):
         return None
-    friction = np.array([each.fric for each in materials])[ground.layer_of(part.positions)]
-    return ground_limits(ground, materials), friction
+    layer = ground.layer_of(part.positions)
+    friction, rolling = (np.array([getattr(each, key) for each in materials])[layer] for key in ("fric", "rr_fric"))
+    return ground_limits(ground, materials), friction, rolling
 
 
 def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int] | None:

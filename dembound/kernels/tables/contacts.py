@@ -63,9 +63,11 @@ class Contacts(NamedTuple):
     the contact pushed in the last step, see kernels/contacts.py; cracked : (b,) int64, step in which the bond broke,
     else −1; place : (b, 2) m, mean displacement of the two disks in that step; kept : (b,) uint8, whether the bond may
     break, see kernels/contacts.py; force : (4, b). viscosity : (2, b) N·s/m of normal and shear dashpots of contacts,
-    and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none. lag : (3K, b) m, m
+    and drag : (2, b) N their last forces, pushing and along the shear; (2, 0) where there are none; damps_bonds :
+    whether they also act beside intact bonds. lag : (3K, b) m, m
     and rad, by which each of the K relaxation arms of a bond lags behind its stretch, its shear and its rotation in
-    turn, see kernels/arms.py; (0, 0) without arms.
+    turn, see kernels/arms.py; (0, 0) without arms. rolled : (b,) rad, rotation of closed contacts without bonds that
+    has not slid, which they resist; (0,) where none resists rolling.
     bound : (chunks + 1,) pairs in rows come before the first of these, the others are sorted by their particles, and
     shared out so that it depends on these alone in which chunk a pair is; after the last one places are spare.
     start, end : rows of contact ends of the pairs in no row, one per particle, those before number `begin` empty, end
@@ -73,7 +75,7 @@ class Contacts(NamedTuple):
     """
 
     begin: int
-
+    damps_bonds: bool
     first: np.ndarray
     second: np.ndarray
     contact_type: np.ndarray
@@ -90,6 +92,7 @@ class Contacts(NamedTuple):
     viscosity: np.ndarray
     drag: np.ndarray
     lag: np.ndarray
+    rolled: np.ndarray
     start: np.ndarray
     end: np.ndarray
     bound: np.ndarray

@@ -189,11 +189,14 @@ def _law_facts(scene: DiskScene) -> Entries:
         return
     start = ", elastic until a contact opens, slips or closes or a bond yields" if scene.case.begins_elastic else ""
     yield "law", f"{material.law}{start}"
+    if scene.case.rolls:
+        yield "rolling", "springs against rolling act from the start; wave speeds, sides and estimates leave them out"
     if scene.ground.overlaps is not None:
         yield "overlap", _overlap_fact(scene.ground)
     if material.has_dashpots:
         ratios = f"{material.dp_nratio:g} normal, {material.dp_sratio:g} shear of the critical damping of two disks"
-        yield "dashpots", f"{ratios}, at closed contacts; the step is {viscous_share(scene):.2f} times as long"
+        where = "closed contacts" if scene.case.damps_bonds else "closed contacts without an intact bond"
+        yield "dashpots", f"{ratios}, at {where}; the step is {viscous_share(scene):.2f} times as long"
     for own in materials_of(scene):
         yield from _strength_facts(own)
 
@@ -218,7 +221,10 @@ def _strength_facts(own: Own) -> Entries:
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
         if material.pb_scatter is not None:
             bonds += f", each times a factor of its own, {material.pb_scatter.in_words}"
-    yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force"
+        if material.pb_mcf < 1.0:
+            bonds += f", where {percent(material.pb_mcf)} of moments count"
+    rolls = f", and roll at {material.rr_fric:g} R̄ of it" if material.rr_fric > 0.0 else ""
+    yield f"strength{name}", f"{bonds}; contacts slip at {material.fric:g} of their normal force{rolls}"
     if ground.moduli.emod > 0.0 and ground.law.starts_elastic:
         yield (
             f"tension{name}",

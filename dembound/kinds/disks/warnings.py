@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.boundaries import SIDES, normal_axis
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.material import MODULI_KEYS
+from dembound.casefile.disks.stiffness import MODULI_KEYS
 from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.scene import DiskScene
 from dembound.kinds.disks.continuum_facts import continuum_warnings

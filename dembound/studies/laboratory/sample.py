@@ -36,6 +36,9 @@ LOW = {"ucs": 0.9, "biaxial": 0.9, "tension": 0.25, "brazilian": 0.4}
 """Peak over the smaller strength of the bonds, as low as it has been measured; of a Brazilian test with the larger
 strain below its jaws."""
 
+COHESIVE = 0.6
+"""Power of `pb_coh` over `pb_ten` above 1 with which compressive strengths grow at least if `pb_mcf` = 0."""
+
 HIGHEST = 8.0
 """Strain up to which a sample is loaded at most, over the one that `LOW` gives."""
 
@@ -134,7 +137,15 @@ class Sample:
     @property
     def peak_strain(self) -> float:
         """A strain at which the peak is not yet reached, from the strength of the bonds."""
-        return LOW[self.test] * self._weakest / self.elastic[0]
+        return LOW[self.test] * self._weakest * self._stronger / self.elastic[0]
+
+    @property
+    def _stronger(self) -> float:
+        """How much larger compressive strengths are as not all of the moment counts in the stress of bonds, or less."""
+        own = self.case.material
+        if self.test not in ("ucs", "biaxial") or own.pb_ten is None or own.pb_coh is None:
+            return 1.0
+        return float(max(own.pb_coh / own.pb_ten, 1.0) ** (COHESIVE * (1.0 - own.pb_mcf)))
 
     @property
     def rate(self) -> float:

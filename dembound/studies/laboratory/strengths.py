@@ -43,6 +43,16 @@ The spread is the standard deviation of the factors of bonds, `spread_of`. Means
 wide, packing B, damp 0.7. They choose the first trial; later ones follow from the trials before.
 """
 
+WITHOUT_MOMENT: Mapping[str, Sequence[float]] = {
+    "pb_coh": (1.0, 2.0, 4.0, 8.0, 16.0),
+    "tension": (0.483, 0.487, 0.49, 0.492, 0.492),
+    "ucs": (1.69, 3.02, 5.09, 8.8, 14.1),
+}
+"""The same with `pb_mcf` = 0, for bonds of one strength, by `pb_coh` over `pb_ten`; means of two seeds, at 8 of five.
+
+Shares for values between 0 and 1 are interpolated in logarithms; those of other spreads have the ratio of `SHARES`.
+"""
+
 CLOSE = 0.03
 """Deviation from a strength asked for at which trials end.
 
@@ -60,8 +70,8 @@ Strengths of the same seeds with other bonds scatter by some 2 %: nearer trials 
 0.4 to 0.7 up to 1.
 """
 
-MOST_RATIO, MOST_SCATTERED = 5.0, 7.0
-"""Largest ratios of strengths that parallel bonds reach, of one strength and with `pb_scatter`."""
+MOST_RATIO, MOST_SCATTERED, MOST_WITHOUT_MOMENT = 5.0, 7.0, 25.0
+"""Largest ratios of strengths that parallel bonds reach: of one strength, with `pb_scatter`, and with `pb_mcf` = 0."""
 
 MISSED = 0.04
 """Deviation of a ratio of strengths from what is in reach that is still tried: each strength misses by half of it."""
@@ -69,8 +79,10 @@ MISSED = 0.04
 NEAR_LIMIT = 0.1
 """Distance from the smallest or largest ratio in reach below which a trial tells what it is."""
 
-TRIED = np.geomspace(COHESIONS[0], COHESIONS[-1], 2000)
-"""All `pb_coh` over `pb_ten` that trials may have where both strengths are asked for."""
+TRIED, TRIED_WITHOUT_MOMENT = (
+    np.geomspace(COHESIONS[0], most, 2000) for most in (COHESIONS[-1], WITHOUT_MOMENT["pb_coh"][-1])
+)
+"""All `pb_coh` over `pb_ten` that trials may have where both strengths are asked for; the second if `pb_mcf` < 1."""
 
 Measure = Callable[[TestName, float, float], Statistic]
 """The strength of samples over seeds: test, `pb_ten` and `pb_coh` (Pa) -> mean and interval."""
@@ -111,12 +123,13 @@ class Search:
     ----------
     targets : strength (Pa) by test, of ``ucs`` and ``tension``.
     cohesion : `pb_coh` over `pb_ten` if only one strength is asked for.
-    spread : of the strengths of bonds, `spread_of`.
+    spread : of the strengths of bonds, `spread_of`. moments : `pb_mcf`, the share of moments in stresses of bonds.
     """
 
     targets: Mapping[TestName, float]
     cohesion: float = 1.0
     spread: float = 0.0
+    moments: float = 1.0
 
     @property
     def ratio(self) -> float | None:
@@ -129,7 +142,9 @@ class Search:
         Raises CaseError for a ratio that parallel bonds do not reach.
         """
         if self.ratio is not None:
-            _require_within(self.ratio, self._ratios([])[0], MOST_SCATTERED if self.spread else MOST_RATIO)
+            usual = MOST_SCATTERED if self.spread else MOST_RATIO
+            most = usual**self.moments * max(MOST_WITHOUT_MOMENT, usual) ** (1.0 - self.moments)
+            _require_within(self.ratio, self._ratios([])[0], (1.0 + MISSED) * most if self.moments < 1.0 else most)
         done: list[Trial] = []
         while len(done) < MOST_TRIALS:
             ten, coh = self._following(done)
@@ -156,14 +171,24 @@ class Search:
             ratios = self._ratios(near)
             if len(done) == 1:
                 _require_told(self.ratio, done[0].ratio, ratios)
-            cohesion = float(TRIED[np.argmin(np.abs(np.log(ratios / self.ratio)))])
+            cohesion = float(self.tried[np.argmin(np.abs(np.log(ratios / self.ratio)))])
         shares = {test: self._shares(test, np.array([cohesion]), near)[0] for test in self.targets}
         pb_ten = float(np.exp(np.mean([np.log(target / shares[test]) for test, target in self.targets.items()])))
         return float(f"{pb_ten:.4g}"), float(f"{cohesion * pb_ten:.4g}")
 
     def _ratios(self, near: Sequence[Trial]) -> np.ndarray:
-        """The ratio of strengths for all `TRIED`."""
-        return self._shares("ucs", TRIED, near) / self._shares("tension", TRIED, near)
+        """The ratio of strengths for all `tried`."""
+        return self._shares("ucs", self.tried, near) / self._shares("tension", self.tried, near)
+
+    @property
+    def tried(self) -> np.ndarray:
+        """All `pb_coh` over `pb_ten` that trials may have."""
+        return TRIED if self.moments == 1.0 else TRIED_WITHOUT_MOMENT
+
+    def expected_ratio(self) -> float:
+        """Compressive over tensile strength with its `pb_coh` over `pb_ten`, without a trial."""
+        ucs, tension = (self._shares(test, np.array([self.cohesion]), [])[0] for test in ("ucs", "tension"))
+        return float(ucs / tension)
 
     def _shares(self, test: TestName, cohesions: np.ndarray, near: Sequence[Trial]) -> np.ndarray:
         """Strength of samples over `pb_ten` for each `pb_coh` over `pb_ten`.
@@ -185,7 +210,13 @@ class Search:
 
         known = np.log(COHESIONS)
         rows = [PchipInterpolator(known, np.log(row))(logs.clip(known[0], known[-1])) for row in SHARES[test]]
-        return np.array([np.interp(self.spread, SPREADS, column) for column in np.transpose(rows)])
+        found = np.array([np.interp(self.spread, SPREADS, column) for column in np.transpose(rows)])
+        if self.moments == 1.0:
+            return found
+        known = np.log(WITHOUT_MOMENT["pb_coh"])
+        without = PchipInterpolator(known, np.log(WITHOUT_MOMENT[test]))(logs.clip(known[0], known[-1]))
+        below = np.minimum(logs - known[0], 0.0) if test == "ucs" else 0.0  # bonds that break in shear alone
+        return self.moments * found + (1.0 - self.moments) * (without + below + found - rows[0])
 
 
 def _logs_of(trials: Sequence[Trial]) -> np.ndarray:
@@ -219,7 +250,7 @@ def _require_within(ratio: float, least: float, most: float, here: str = "") -> 
     """
     if ratio > most:
         reach = f"parallel bonds of one strength reach about {MOST_RATIO:g}, scatter of their strengths about"
-        recipe = 'material.pb_scatter = {type = "normal", deviation = 0.5}'
+        recipe = f'material.pb_scatter = {{type = "normal", deviation = 0.5}}; pb_mcf = 0 {MOST_WITHOUT_MOMENT:g}'
         raise CaseError([f"--ucs over --tension: is {ratio:.3g}, {reach} {MOST_SCATTERED:g}{here}; {recipe}"])
     if ratio < least:
         what = f"must be {least:.3g} or more for parallel bonds{here}"

@@ -13,7 +13,7 @@ from dembound.disks.material.constants import bond_factors, brick_constants, gro
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.files import make_folder
-from dembound.laws.law import Limits, in_columns
+from dembound.laws.law import AnyLimits, columns_of, in_columns
 from dembound.laws.linearpbond import limit_in_words, limit_lines
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
@@ -35,7 +35,7 @@ class WatchedContact(NamedTuple):
     name: str
     monitors: tuple[int, int]
     constants: np.ndarray
-    limits: Limits
+    limits: AnyLimits
     settled: np.ndarray
 
 
@@ -109,7 +109,7 @@ def _contacts(library: Library, scene: DiskScene, pair: str) -> Iterator[Watched
     for place in np.flatnonzero(forward | backward):
         order = numbers if forward[place] else numbers[::-1]
         kind = scene.assembly.contact_type[place]
-        own = in_columns(np.array(limits[:4]).T[[kind]], limits.geometry) if scene.ground.is_layered else limits
+        own = in_columns(np.array(columns_of(limits)).T[[kind]], limits.geometry) if scene.ground.is_layered else limits
         if bonds is not None:
             factor = float(bonds.at(pairs[[place], 0], kind)[0])
             own = own._replace(tension=factor * own.tension, cohesion=factor * own.cohesion)

@@ -1,6 +1,6 @@
 """How near ground is to failure under its weight: factor of safety by strength reduction, and yield acceleration.
 
-The body settles in its static stage with all strengths divided by F: friction, tensile strength, cohesion, and the
+The body settles in its static stage with all strengths divided by F: friction, rolling, tensile strength, cohesion, the
 tangent of the bonds' friction angle. F is doubled or halved from 1 until one state stands and one fails, then bisected.
 Each trial begins with the body as built, so a case with all strengths doubled has exactly twice the factor. From the
 state at full strength a horizontal acceleration of the whole body is raised to each tried value, from the last value at
@@ -113,7 +113,7 @@ def weaker(case: DiskCase, factor: float) -> DiskCase:
     """The case with all strengths, of [material] and of layers, divided by a factor."""
 
     def divided(table: T) -> T:
-        given = {key: getattr(table, key, None) for key in ("fric", "pb_ten", "pb_coh", "pb_fa")}
+        given = {key: getattr(table, key, None) for key in ("fric", "rr_fric", "pb_ten", "pb_coh", "pb_fa")}
         changes = {key: value / factor for key, value in given.items() if value}
         if angle := given["pb_fa"]:
             changes["pb_fa"] = degrees(atan(tan(radians(angle)) / factor))

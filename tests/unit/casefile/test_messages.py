@@ -88,7 +88,8 @@ def about(tables: dict, path: str, key: str) -> str:
 SAID = """
 material | kn | write emod, Pa: the normal stiffness of a contact is k_n = emod
 material | pb_ks | write pb_kratio = pb_kn/pb_ks
-material | pb_mcf | there is none: bonds break as with pb_mcf = 1
+material | moment_contribution | write pb_mcf, 0 to 1, the share of the moment
+material | etaRoll | write rr_fric, the largest moment over R̄ times the normal force
 material | E | write young and poisson, of the body, or emod and pb_emod
 static | damping | write damp
 packing | radius_max | write radius: disks of pattern "A" are equal, those of "B" and "C" also have radius_ratio

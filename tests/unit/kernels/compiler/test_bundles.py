@@ -12,11 +12,12 @@ from dembound.laws.law import Limits
 pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")  # type: ignore[attr-defined]
 
 CONTACTS = Contacts(
-    begin=-3, first=np.zeros(2, np.uint32), second=np.ones(2, np.uint32), contact_type=np.zeros(2, np.uint32),
+    begin=-3, damps_bonds=True, first=np.zeros(2, np.uint32), second=np.ones(2, np.uint32),
+    contact_type=np.zeros(2, np.uint32),
     constants=np.arange(24.0).reshape(2, 12), began=0.0, state=np.array([1, 200], np.uint8),
     shear=np.array([0.1, -0.2]), slip=np.zeros(2), closed=np.zeros(2, np.uint8), cracked=np.array([-1, 7]),
     place=np.zeros((2, 2)), kept=np.zeros(2, np.uint8), force=np.arange(8.0).reshape(4, 2),
-    viscosity=np.zeros((2, 0)), drag=np.zeros((2, 0)), lag=np.zeros((0, 0)), bound=np.arange(3),
+    viscosity=np.zeros((2, 0)), drag=np.zeros((2, 0)), lag=np.zeros((0, 0)), rolled=np.zeros(0), bound=np.arange(3),
     start=np.zeros(3, np.uint32), end=np.zeros(0, np.uint32),
 )  # fmt: skip
 CELLS = Cells(np.arange(3), np.arange(2), np.array([2, 1]), np.array([False, True]), 0.25)

@@ -92,3 +92,18 @@ def test_ratios_out_of_reach_are_refused() -> None:
     with pytest.raises(CaseError, match=r"is 4, .*in this packing 1\.5 to 3\.2"):
         list(Search({"ucs": 40e6, "tension": 10e6}).trials(Rock(ratio=0.8).measure))
     assert next(Search({"ucs": 60e6, "tension": 10e6}, spread=SPREADS[-1]).trials(Rock().measure))
+
+
+def test_bonds_without_moments_reach_the_ratio_of_rock() -> None:
+    rock, targets = Rock(0.45, lambda cohesion: 3.4 * cohesion**0.75), {"ucs": 200e6, "tension": 12e6}
+    with pytest.raises(CaseError, match=r"is 16\.7, .*pb_mcf = 0"):
+        next(Search(targets).trials(rock.measure))
+    search = Search(targets, moments=0.0)
+    *_, last = search.trials(rock.measure)
+
+    assert last.deviation(targets) <= CLOSE
+    assert last.cohesion == pytest.approx((200.0 / 12.0 / 3.4) ** (1.0 / 0.75), rel=0.05)
+    expected = [Search({}, 8.0, moments=moments).expected_ratio() for moments in (1.0, 0.5, 0.0)]
+    assert expected[0] == pytest.approx(ONE_STRENGTH[-1])
+    assert expected[2] == pytest.approx(8.8 / 0.492)
+    assert expected[1] == pytest.approx(np.sqrt(expected[0] * expected[2]))
