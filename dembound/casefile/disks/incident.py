@@ -206,6 +206,8 @@ def not_level(side: str, table: Boundary, tables: Mapping[str, Any]) -> Iterator
         yield f"boundary.{side} without springs"
     if tables["hole"]:
         yield "ground without holes"
+    if tables["ground"] and tables["ground"].points:
+        yield "level ground up to the top of the disks, without ground.surface"
     if tables["ground"] and tables["ground"].meet is not None:
         yield "layers that are the same at both sides, without ground.meet"
     held = tables["motion"] and tables["motion"].held

@@ -46,7 +46,9 @@ class Blocks:
     @classmethod
     def of(cls, scene: DiskScene, moved: np.ndarray | None = None) -> Blocks:
         """The blocks of a body as built, or with its sides moved by displacements (3, n)."""
-        diameter, wide = scene.ground.brick.mean_diameter, scene.assembly.size
+        diameter, wide = scene.ground.brick.mean_diameter, scene.assembly.size.copy()
+        if scene.surface is not None:  # a column may end far below the top of its box
+            wide[1] = min(wide[1], scene.surface[1].max() - scene.assembly.origin[1])
         wraps = np.array(scene.case.periodic)
         rim = np.where(wraps, 0.0, np.minimum(RIM * diameter, 0.25 * wide))
         inside = wide - 2.0 * rim
@@ -277,6 +279,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]
     if case.is_unlike:
         keys["sides_of_layers"] = [case.ground.meet, *(layer.side for layer in case.layer)]
+    if case.ground.surface is not None:
+        keys["surface"] = case.ground.points
     if case.wall:
         keys["wall"] = [{**every_key(wall), "points": wall.line} for wall in case.wall]
     if scene.ground.is_damped:

@@ -142,6 +142,7 @@ BELOW = side("bottom", "viscous_input", 'wave_s = "w"') + ROUND
 PRESCRIBED = side("bottom", "velocity", 'wave_s = "w"') + ROUND
 LOAD = '[[load]]\nname = "push"\nposition = [5.0, 2.5]\nforce = [1.0, 0.0]\nwave = "w"\n'
 HOLE = '[[hole]]\ntype = "circle"\nname = "h"\ncentre = [5.0, 2.5]\nradius = 1.0\n'
+SURFACE = "[ground]\nsurface = [[0.0, 5.0], [4.0, 5.0], [6.0, 3.0], [10.0, 3.0]]\n" + BELOW
 TWICE = BELOW.replace('_s = "w"', '_s = "w"\nwave_p = "w"')
 
 
@@ -153,6 +154,7 @@ TWICE = BELOW.replace('_s = "w"', '_s = "w"\nwave_p = "w"')
         ("incident", LOAD, "is for waves of sides, but this one is the factor of load[1, push]; leave it out"),
         ("within", BELOW + side("top", "viscous"), "which needs a free surface at the top"),
         ("within", BELOW + HOLE, "which needs ground without holes"),
+        ("within", SURFACE, "which needs level ground up to the top of the disks, without ground.surface"),
         ("within", BELOW.replace("periodic", "viscous"), "level ground: boundary.left and boundary.right take from"),
         ("within", TWICE, "every wave_p and wave_s to name a wave of its"),
         ("within", BELOW.replace('"viscous_', '"viscoelastic_').replace("wave_s", "distance = 9.0\nwave_s"), "springs"),
