@@ -15,6 +15,7 @@ from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
 from dembound.disks.columns import COLUMNS, free_field_attributes, level_at, parts_of
 from dembound.disks.contacts.layout import Rows
+from dembound.disks.faces.found import Faces
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
@@ -85,7 +86,7 @@ class DiskBody(Scene):
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
-    all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
+    faces : of its joints. all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
     """
 
     case: DiskCase
@@ -103,6 +104,7 @@ class DiskBody(Scene):
     ground_waves: Undisturbed | None = None
     surface: np.ndarray | None = None
     all_intact: bool = False
+    faces: tuple[Faces, ...] = ()
 
     kind = "disks"
     energy_unit = "J/m"
@@ -292,6 +294,19 @@ class DiskBody(Scene):
     def bearing(self) -> Springs | None:
         """The springs of the bottom on relative motion; None without any."""
         return None
+
+    @cached_property
+    def beside_joints(self) -> np.ndarray | None:
+        """Number (m,) of the joint that each disk is beside, negative on the right of it, else 0; None without any.
+
+        Disks of opposite numbers never touch.
+        """
+        if not self.faces:
+            return None
+        found = np.zeros(self.disk_count, dtype=np.int64)
+        for number, each in enumerate(self.faces, start=1):
+            found = np.where(found == 0, number * each.side.astype(np.int64), found)
+        return found
 
     @cached_property
     def intact_zones(self) -> dict[str, np.ndarray]:

@@ -27,6 +27,7 @@ from dembound.disks.columns import (
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.faces.found import faces_of, without_crossing
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import layered
@@ -218,6 +219,9 @@ def _scene(
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count, surface = len(assembly.radii), case.surface
+    disks = slice(columns_end(seams), count)
+    faces = tuple(faces_of(joint, ground, assembly, disks, case.packing.box) for joint in case.joint)
+    assembly = without_crossing(assembly, faces)
     assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
@@ -253,6 +257,7 @@ def _scene(
         between=between,
         ground_waves=waves,
         surface=surface,
+        faces=faces,
     )
     return with_waves(scene, case.wave)
 
@@ -280,7 +285,14 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(
-        case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=(), ground=case.ground.level()
+        case,
+        boundary=sides | upright,
+        static=static,
+        load=everywhere,
+        hole=(),
+        joint=(),
+        monitor=(),
+        ground=case.ground.level(),
     )
     standing = Standing((), scene.seams[number].top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
+from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
@@ -51,7 +52,7 @@ class DiskCase(Case):
     ----------
     run, ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
-    layer : from the surface down; none: the ground is uniform. hole : in the order of the file.
+    layer : from the surface down; none: the ground is uniform. hole, joint : in the order of the file.
     """
 
     run: DiskRun
@@ -66,6 +67,7 @@ class DiskCase(Case):
     static: Static | None = None
     layer: tuple[Layer, ...] = ()
     hole: tuple[Hole, ...] = ()
+    joint: tuple[Joint, ...] = ()
     load: tuple[Load, ...] = ()
     monitor: tuple[Monitor, ...] = ()
 

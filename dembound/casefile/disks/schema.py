@@ -18,6 +18,7 @@ from dembound.casefile.disks.incident import (
     is_damped,
     motion_problems,
 )
+from dembound.casefile.disks.joint import Joint, joint_problems
 from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, Material
@@ -77,6 +78,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         for key in ("load", "monitor"):
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])
     yield from hole_problems(tables, "static" in given)
+    yield from joint_problems(tables)
     yield from lowered_problems(tables)
     yield from law_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
@@ -204,6 +206,7 @@ SCHEMA = Schema(
     lists={
         "layer": TypeAdapter(Layer),
         "hole": TypeAdapter(HoleTable),
+        "joint": TypeAdapter(Joint),
         "load": TypeAdapter(Load),
         "monitor": TypeAdapter(MonitorTable),
     },

@@ -211,7 +211,7 @@ class Settled:
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
         for part, pairs in start.contacts.items():
             kept |= {f"contacts/{part}/{name}": values for name, values in pairs.saved_arrays().items()}
-        return kept
+        return kept | {f"joints/{name}": values for name, values in start.joints.items()}
 
     @classmethod
     def restored(cls, scene: DiskScene, saved: Arrays) -> Self:
@@ -219,9 +219,10 @@ class Settled:
         contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in saved) else {}
         for part, pairs in contacts.items():
             pairs.restore(arrays_of_owner(saved, f"contacts/{part}"))
+        joints = arrays_of_owner(saved, "joints")
         cracks, uniformity = arrays_of_owner(saved, "cracks"), arrays_of_owner(saved, "uniformity")
         return cls(
-            start=Start(among(saved["displacement"], scene), contacts, bool(saved["has_history"])),
+            start=Start(among(saved["displacement"], scene), contacts, bool(saved["has_history"]), joints),
             steps=int(saved["steps"]),
             ratio=float(saved["ratio"]),
             mean_reaction=float(saved["mean_reaction"]),
@@ -262,6 +263,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["outside_sides"] = scene.outside.sides
         if scene.ground.is_layered:
             keys["outside_rows"] = [float(height) for height in scene.outside.body.mesh.heights]
+    if case.joint:
+        keys["joint"] = case.joint
     if case.intact:
         keys["intact"] = case.intact
     if case.layer:

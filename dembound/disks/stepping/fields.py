@@ -10,12 +10,13 @@ import numpy as np
 from dembound.continuum.part import GridPart
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contacts
+from dembound.disks.faces.tie import JointTie, cracks_of
 from dembound.disks.stepping.damped_ground import unrelaxed
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.scene_parts import DiskParts
 from dembound.kernels.contacts import REFERENCE
 from dembound.kernels.tables.contacts import Contacts
-from dembound.motion.part import Part, System, Tie
+from dembound.motion.part import Cracks, Part, System, Tie, joined
 
 
 def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
@@ -87,21 +88,36 @@ class RecordedDisks(System):
 
     Parameters
     ----------
-    scene : the scene. disks : its parts of disks. beyond : its continua. ties : all of the scene. load : (3, n) N and
+    scene : the scene. disks : its parts of disks. joints : its joints. beyond : its continua. ties : all of the scene. load : (3, n) N and
     N·m, steady forces and moments.
     """
 
     def __init__(
-        self, scene: DiskBody, disks: DiskParts, beyond: Sequence[Part], ties: Sequence[Tie], load: np.ndarray
+        self,
+        scene: DiskBody,
+        disks: DiskParts,
+        joints: Sequence[JointTie],
+        beyond: Sequence[Part],
+        ties: Sequence[Tie],
+        load: np.ndarray,
     ) -> None:
         super().__init__([*disks.parts, *beyond], ties, load)
-        self.scene, self.disks = scene, disks
+        self.scene, self.disks, self.joints = scene, disks, tuple(joints)
         self._stress_at_rest: np.ndarray | None = None
 
     @property
     def recorded_parts(self) -> tuple[DiskPart, ...]:
         """The parts whose nodes are recorded as particles, those of disks."""
         return self.disks.parts
+
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) in contacts, with that of joints, and in bonds at displacements (3, slots)."""
+        in_contacts, in_bonds = super().stored(u)
+        return in_contacts + sum(joint.stored() for joint in self.joints), in_bonds
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called, and the places where joints lost their strength."""
+        return joined([super().take_cracks(steps), cracks_of(self.joints)])
 
     def stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (m, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive.

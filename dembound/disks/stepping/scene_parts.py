@@ -15,6 +15,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
+from dembound.disks.faces.tie import JointTie
 from dembound.disks.material.constants import bond_factors, ground_limits
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.stepping.arms import arms_of, arms_per_bond
@@ -27,7 +28,7 @@ from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
 from dembound.laws.law import Limits
 from dembound.motion.part import Tie
-from dembound.motion.state import Layout
+from dembound.motion.state import Layout, arrays_of_owner
 from dembound.packings.tiling import Assembly
 
 
@@ -36,12 +37,14 @@ class Start:
     """A body at rest to start from: displacement (3, n) m and rad since it was built, and its contacts.
 
     contacts : of each part by name, empty if the scene's law has no history. The system that starts from them changes
-    them, so a start can be used only once. has_history : whether they have any history.
+    them, so a start can be used only once. has_history : whether they have any history. joints : what joints remember,
+    see `faces.tie.states_of`.
     """
 
     displacement: np.ndarray
     contacts: Mapping[str, ContactList] = field(default_factory=dict)
     has_history: bool = False
+    joints: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def left_elastic_law(self) -> bool:
@@ -84,6 +87,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
         3 * arms_per_bond(scene),
+        None if scene.beside_joints is None or name in COLUMNS else scene.beside_joints[nodes],
     )
 
 
@@ -185,6 +189,21 @@ def walls(scene: DiskBody) -> list[Tie]:
     return walls
 
 
+def joint_ties(scene: DiskBody, start: Start | None, time_step: float) -> list[JointTie]:
+    """The joints of a scene, with the history of the body from which it starts, or as built."""
+    ground = scene.ground
+    impedance = float(np.sqrt(ground.density * ground.material_tensor[0, 0]))
+    positions, diameter = scene.assembly.positions, ground.brick.mean_diameter
+    gives = scene.moves / np.stack([scene.mass, scene.mass, scene.inertia])
+    ties = []
+    for faces in scene.faces:
+        tie = JointTie(faces, positions, diameter, impedance, gives, scene.layout, time_step, scene.at_rest)
+        if start is not None and start.joints:
+            tie.go_on_from(arrays_of_owner(start.joints, tie.name))
+        ties.append(tie)
+    return ties
+
+
 class DiskParts:
     """The parts of disks of a scene, which change their law together.
 
@@ -205,7 +224,8 @@ class DiskParts:
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = contact_lists(scene) if start is None else start.contacts
-        supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
+        beside = [each.disk for each in scene.faces]
+        supported = scene.layout.slot[np.union1d(scene.supports.node, np.concatenate([tied_nodes(scene), *beside]))]
         ground, layout = scene.ground.stepped, scene.layout
         self.parts = tuple(
             DiskPart(

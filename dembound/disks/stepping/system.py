@@ -15,7 +15,7 @@ from dembound.disks.stepping.damped_ground import drag_rates
 from dembound.disks.stepping.fields import RecordedDisks, turned_as_a_whole, turns_freely
 from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
-from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
+from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, joint_ties, walls
 from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.surroundings.jump import JumpTie
 from dembound.kernels.common import BROKE, LAW_ENDS
@@ -60,10 +60,12 @@ class DiskSystem(RecordedDisks):
         disks = DiskParts(scene, start, None if settling else time_step, watches=not settling)
         for pairs in disks.contacts.values():
             pairs.time_step = time_step
+        joints = joint_ties(scene, start, time_step)
         ties = [*walls(scene), *disks.seams]
         if disks.damped_ties is not None:  # last of those that it remembers
             ties.insert(len(ties) if disks.remembers_seams else len(ties) - len(disks.seams), disks.damped_ties)
         self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
+        ties += joints
         if self._bearing is not None:
             ties.append(self._bearing)
         if scene.outside is not None and scene.outside.body.mesh.slit and not settling:
@@ -71,13 +73,14 @@ class DiskSystem(RecordedDisks):
         super().__init__(
             scene,
             disks,
+            joints,
             grids(scene, time_step, damped=not settling),
             ties,
             scene.steady_load if load is None else load,
         )
         if not settling:
             self.drag = drag_rates(scene)
-        self.forces = RestForces(scene, disks)
+        self.forces = RestForces(scene, disks, joints)
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self._time_step, self._start, self._settling = time_step, start, settling
