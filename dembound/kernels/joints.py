@@ -8,9 +8,12 @@ middle p of the overlap. With n the normal from the second face j to the first, 
     shear w = (u_i − u_j)·t + θ_i h_i + θ_j h_j,    σ = −k_n g,    τ = −k_s (w − slip)
 
 Where it fails, the pair has σ ≥ 0 and |τ| ≤ μσ. A pair that begins to overlap has L = 0 and no shear, so that forces
-have no steps. While a pair slides, a normal dashpot takes the chatter that sliding sets off: in each step, after all
-forces, pair by pair, by the impulse with which its rate is that after the impulse, so that it takes energy whatever the
-step is.
+have no steps.
+
+Elastic bodies that slide on each other drive waves, as friction follows the pressure (Adams 1995). It therefore follows
+with a delay (Prakash & Clifton 1993, Ranjith & Rice 2001), in which P waves run one diameter. And a normal dashpot acts
+while a pair slides: in each step, after all forces, pair by pair, by the impulse −c L Δt × the rate after it, so that
+it takes energy whatever the step is. Friction counts its stress, too.
 """
 
 import numpy as np
@@ -96,7 +99,9 @@ def _push_pair(joint, k, u, v):
                     _note_event(joint, k, torn, ax + tx * middle, ay + ty * middle)
             if not pairs.intact[k]:
                 push = max(push, 0.0)
-                most = law.friction * max(push + pairs.drag[k], 0.0)
+                bearing = pairs.bearing[k] + law.follows * (push + pairs.drag[k] - pairs.bearing[k])
+                pairs.bearing[k] = bearing if push > 0.0 else 0.0
+                most = law.friction * pairs.bearing[k]
                 if abs(rub) > most:
                     slides = push > 0.0
                     rub = np.copysign(most, rub)
@@ -156,7 +161,7 @@ def _copy(one, k, other, q):
     other.slip[q], other.moved[q], other.length[q] = one.slip[k], one.moved[k], one.length[k]
     other.pressure[q], other.shear[q], other.drag[q] = one.pressure[k], one.shear[k], one.drag[k]
     other.arm[q, 0], other.arm[q, 1] = one.arm[k, 0], one.arm[k, 1]
-    other.energy[q] = one.energy[k]
+    other.energy[q], other.bearing[q] = one.energy[k], one.bearing[k]
 
 
 @njit(**FAST)
@@ -167,7 +172,7 @@ def _begin_pair(pairs, q, f, g):
     pairs.slip[q], pairs.moved[q], pairs.length[q] = 0.0, 0.0, 0.0
     pairs.pressure[q], pairs.shear[q], pairs.drag[q] = 0.0, 0.0, 0.0
     pairs.arm[q, 0], pairs.arm[q, 1] = 0.0, 0.0
-    pairs.energy[q] = 0.0
+    pairs.energy[q], pairs.bearing[q] = 0.0, 0.0
 
 
 @apart()

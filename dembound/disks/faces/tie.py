@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.disks.faces.found import Faces
 from dembound.disks.material.at_rest import StressAtRest
+from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import RunError
 from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
 from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
@@ -21,14 +22,16 @@ ROOM = 8
 MARGIN = 0.25
 """By how much faces may lie apart that are listed as pairs, over the mean diameter."""
 
+DELAY = 1.0
+"""Way of P waves, over the mean diameter, in the time in which friction follows a change of pressure."""
+
 
 class JointTie(Tie):
     """The faces of a joint with what they remember.
 
     Parameters
     ----------
-    faces : of the joint. positions : (n, 2) m of the scene's disks. diameter : m, the mean one. impedance : ρ c_p of
-    the ground, kg/(m²·s). gives : (3, n) inverse masses and moments of inertia of the scene's nodes, 0 for what is held
+    faces : of the joint. positions : (n, 2) m of the scene's disks. ground : their material. gives : (3, n) inverse masses and moments of inertia of the scene's nodes, 0 for what is held
     or prescribed. layout : slots of the scene. time_step : s. at_rest : the stress with which the faces begin;
     None: without.
     """
@@ -37,8 +40,7 @@ class JointTie(Tie):
         self,
         faces: Faces,
         positions: np.ndarray,
-        diameter: float,
-        impedance: float,
+        ground: PackedMaterial,
         gives: np.ndarray,
         layout: Layout,
         time_step: float,
@@ -49,6 +51,7 @@ class JointTie(Tie):
         self.faces, self._layout, self._count = faces, layout, layout.count
         self._nodes = np.unique(faces.disk)
         self._known: np.ndarray | None = None
+        diameter, speed = ground.brick.mean_diameter, float(np.sqrt(ground.material_tensor[0, 0] / ground.density))
         kn, ks = faces.stiffness.tolist()
         normal = np.stack([-faces.along[:, 1], faces.along[:, 0]], axis=1)
         centre, first = positions[faces.disk], faces.ends[:, 0]
@@ -63,8 +66,9 @@ class JointTie(Tie):
                 friction=float(joint.fric or 0.0),
                 tension=joint.ten,
                 cohesion=joint.coh,
-                dashpot=joint.dashpot * impedance,
+                dashpot=joint.dashpot * ground.density * speed,
                 step=time_step,
+                follows=1.0 - float(np.exp(-time_step * speed / (DELAY * diameter))),
                 fails=not joint.is_linear,
                 margin=MARGIN * diameter,
                 reach=diameter,
@@ -99,6 +103,7 @@ class JointTie(Tie):
         one, other = pairs.first[found], pairs.second[found]
         pairs.slip[found] = 0.5 * (shear[one] + shear[other]) / bundle.law.ks
         pairs.intact[found] = joint.ten > 0.0 or joint.coh > 0.0
+        pairs.bearing[found] = bundle.law.kn * (bundle.closure[one] + bundle.closure[other])
         push_faces(bundle, rest, rest)
         bundle.count[STEPS] = 0
         bundle.lost[:] = 0.0

@@ -191,13 +191,10 @@ def walls(scene: DiskBody) -> list[Tie]:
 
 def joint_ties(scene: DiskBody, start: Start | None, time_step: float) -> list[JointTie]:
     """The joints of a scene, with the history of the body from which it starts, or as built."""
-    ground = scene.ground
-    impedance = float(np.sqrt(ground.density * ground.material_tensor[0, 0]))
-    positions, diameter = scene.assembly.positions, ground.brick.mean_diameter
     gives = scene.moves / np.stack([scene.mass, scene.mass, scene.inertia])
     ties = []
     for faces in scene.faces:
-        tie = JointTie(faces, positions, diameter, impedance, gives, scene.layout, time_step, scene.at_rest)
+        tie = JointTie(faces, scene.assembly.positions, scene.ground, gives, scene.layout, time_step, scene.at_rest)
         if start is not None and start.joints:
             tie.go_on_from(arrays_of_owner(start.joints, tie.name))
         ties.append(tie)

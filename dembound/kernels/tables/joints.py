@@ -8,8 +8,8 @@ import numpy as np
 class JointLaw(NamedTuple):
     """Constants of a joint: kn, ks Pa/m, friction, tension and cohesion Pa, dashpot Pa·s/m of sliding faces, step s.
 
-    fails : whether its faces part and slide. margin : m, by which faces on the list of pairs may lie apart. reach : m,
-    gap of a pair above which it is not listed.
+    follows : share of a change of pressure that friction follows in a step. fails : whether its faces part and slide.
+    margin : m, by which faces on the list of pairs may lie apart. reach : m, gap of a pair above which it is not listed.
     """
 
     kn: float
@@ -19,6 +19,7 @@ class JointLaw(NamedTuple):
     cohesion: float
     dashpot: float
     step: float
+    follows: float
     fails: bool
     margin: float
     reach: float
@@ -28,10 +29,11 @@ class FacePairs(NamedTuple):
     """Pairs of faces that overlap or may soon, p places of which `count` are in use; sorted by first, then second.
 
     first, second : (p,) faces. intact : (p,) bool, whether the joint has its strength there; slides : (p,) bool, in the
-    last step. slip : (p,) m, shear displacement without stress. length, pressure, shear, drag : (p,) m and Pa of the
-    last step: the overlap, the normal stress, positive if it pushes, the shear stress on the first face along its line,
-    and the mean normal stress of the dashpot. moved : (p,) m, the shear displacement. arm : (p, 2) m, from the foot of each
-    disk's centre to the middle of the overlap along the line. energy : (p,) J.
+    last step. slip : (p,) m, shear displacement without stress; moved : (p,) m, shear displacement. length : (p,) m,
+    overlap in the last step; pressure, shear, drag : (p,) Pa, its normal stress, positive if it pushes, its shear
+    stress on the first face along its line, and the normal stress of the dashpot; bearing : (p,) Pa, the pressure that
+    friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the line.
+    energy : (p,) J.
     """
 
     first: np.ndarray
@@ -46,6 +48,7 @@ class FacePairs(NamedTuple):
     drag: np.ndarray
     arm: np.ndarray
     energy: np.ndarray
+    bearing: np.ndarray
 
 
 class JointFaces(NamedTuple):
