@@ -86,7 +86,8 @@ class DiskBody(Scene):
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
-    faces : of its joints. all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
+    all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
+    faces : of its joints.
     """
 
     case: DiskCase

@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import h5py
 import numpy as np
 
+from dembound.casefile.reader import parsed
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
@@ -49,7 +50,7 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: their names and joints, the heights (m) between them, from the surface
-    down, none of uniform ground.
+    down, none of uniform ground; faults: points (k, 2) m on the line of each of the case's joints.
     """
 
     positions: np.ndarray
@@ -63,6 +64,7 @@ class Disks:
     holes: tuple[Hole, ...] = ()
     layers: tuple[str, ...] = ()
     joints: tuple[float, ...] = ()
+    faults: tuple[np.ndarray, ...] = ()
 
     @cached_property
     def own_window(self) -> Window:
@@ -158,7 +160,17 @@ def read_disks(file: h5py.File) -> Disks:
         holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
         layers=tuple(map(text_of, file.attrs.get("layer_names", ()))),
         joints=tuple(map(float, file.attrs.get("joints", ()))),
+        faults=_read_faults(file),
     )
+
+
+def _read_faults(file: h5py.File) -> tuple[np.ndarray, ...]:
+    """Points (k, 2) m on the line of each joint in the case of an open record; none without its text."""
+    try:
+        joints = parsed(text_of(file.attrs.get("case", ""))).get("joint", [])
+        return tuple(np.array(joint["points"], dtype=float).reshape(-1, 2) for joint in joints)
+    except (CaseError, KeyError, TypeError, ValueError):
+        return ()
 
 
 @dataclass(frozen=True)

@@ -201,6 +201,8 @@ def draw_panel(
         if window.extent[0] < seam < window.extent[1]:
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
     _mark_layers(panel, disks, window, scale / panel.figure.dpi)
+    if shown.moved is None:
+        _mark_faults(panel, disks)
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi
@@ -212,6 +214,14 @@ def draw_panel(
         else:
             axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
+
+
+def _mark_faults(panel: Axes, disks: Disks) -> None:
+    """Lines along joints, visible on all colours."""
+    for points in disks.faults:
+        looks: dict[str, Any] = {"zorder": ABOVE_DISKS, "solid_capstyle": "round"}
+        panel.plot(*points.T, color="white", linewidth=2.2, scalex=False, scaley=False, **looks)
+        panel.plot(*points.T, color="black", linewidth=1.2, scalex=False, scaley=False, **looks)
 
 
 def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:

@@ -167,6 +167,7 @@ class Steps:
                 outside=outside or self.case.outside,
                 ground=Ground(),
                 hole=(),
+                joint=(),
                 load=(),
                 monitor=(),
                 wave={},

@@ -73,6 +73,12 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
     return least
 
 
+def _require_no_joints(case: DiskCase) -> None:
+    """Raise CaseError for a case with joints, whose errors no formula and no companion knows."""
+    if case.joint:
+        raise CaseError(["joint: errors of motion beside joints are not predicted; compare runs with smaller disks"])
+
+
 def _require_known(case: DiskCase) -> None:
     """Raise CaseError where errors, or the body itself, depend on unknown properties of other disks and sides."""
     problems = []
@@ -120,6 +126,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         require_linear(case.material.law)
+        _require_no_joints(case)
         return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
     def truth(self, case: DiskCase) -> Truth:
@@ -164,6 +171,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         and running the companions.
         """
         require_linear(case.material.law)
+        _require_no_joints(case)
         _require_known(case)
         kept = [*kept, "packing.radius"] if of == "disks" else kept
         watch.begins("the packing, and the time step")
@@ -244,6 +252,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
+        _require_no_joints(scene.case)
         require_linear(scene.case.material.law)
         return quick_causes(scene)
 

@@ -31,9 +31,9 @@ class JointTie(Tie):
 
     Parameters
     ----------
-    faces : of the joint. positions : (n, 2) m of the scene's disks. ground : their material. gives : (3, n) inverse masses and moments of inertia of the scene's nodes, 0 for what is held
-    or prescribed. layout : slots of the scene. time_step : s. at_rest : the stress with which the faces begin;
-    None: without.
+    faces : of the joint. positions : (n, 2) m of the scene's disks. ground : their material. gives : (3, n) inverse
+    masses and moments of inertia of the scene's nodes, 0 for what is held or prescribed. layout : slots of the scene.
+    time_step : s. at_rest : the stress with which the faces begin; None: without.
     """
 
     def __init__(
@@ -152,6 +152,20 @@ class JointTie(Tie):
         """Energy (J) in its springs at the last step."""
         bundle = self._bundle
         return float(bundle.pairs.energy[: bundle.count[PAIRS]].sum())
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """Disks (k,) of faces that press on others, or are held by the joint's strength."""
+        pairs = self.acting
+        there = (pairs.pressure > 0.0) | pairs.intact | self.faces.joint.is_linear
+        return self.faces.disk[np.concatenate([pairs.first[there], pairs.second[there]])]
+
+    def forces(self, pairs: FacePairs) -> np.ndarray:
+        """Forces (2, k) N of the last step on the disks of the first faces of pairs."""
+        along = self.faces.along[pairs.first] + self.faces.along[pairs.second]
+        along = (along / np.hypot(*along.T)[:, None]).T
+        push, rub = pairs.length * pairs.pressure, pairs.length * pairs.shear
+        return np.stack([rub * along[0] - push * along[1], rub * along[1] + push * along[0]])
 
     @property
     def acting(self) -> FacePairs:

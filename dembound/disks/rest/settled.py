@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
+from itertools import chain
 from typing import Any, Self
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from dembound.disks.contacts.pairs import Piece, pieces
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import packing_pieces
+from dembound.disks.stepping.fields import joint_pieces
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import UPDATED
@@ -107,7 +109,8 @@ class Blocks:
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
     part = system.disks.parts[-1]
-    found = pieces(scene.layout, part.stressed_pairs, displacement, part.geometry)
+    of_contacts = pieces(scene.layout, part.stressed_pairs, displacement, part.geometry)
+    found = chain(of_contacts, joint_pieces(system.joints, scene, displacement))
     if part.geometry != UPDATED:
         return Blocks.of(scene).stress(found, scene.positions)
     return Blocks.of(scene, displacement).stress(found, scene.positions + displacement[:2].T)

@@ -153,12 +153,21 @@ class DiskSystem(RecordedDisks):
             self.switch(state)
         elif self.balance is not None and looks:
             self.balance.end_on_debris(
-                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self.scene.intact
+                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self._held
             )
             self._let_go()
         super().react(why, steps, state)
         if looks:
             self.look_near_ties(state)
+
+    @property
+    def _held(self) -> np.ndarray | None:
+        """Disks (m,) by which pieces are not debris: those whose bonds never break, and those pressed on a joint."""
+        held = self.scene.intact
+        for joint in self.joints:
+            held = np.zeros(self.scene.disk_count, dtype=np.bool_) if held is None else held.copy()
+            held[joint.pressed] = True
+        return held
 
     def look_near_ties(self, state: State) -> None:
         """Note contacts near ties to a continuum that have opened or slid, which the elastic law does not describe."""

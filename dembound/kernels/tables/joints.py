@@ -9,7 +9,8 @@ class JointLaw(NamedTuple):
     """Constants of a joint: kn, ks Pa/m, friction, tension and cohesion Pa, dashpot Pa·s/m of sliding faces, step s.
 
     follows : share of a change of pressure that friction follows in a step. fails : whether its faces part and slide.
-    margin : m, by which faces on the list of pairs may lie apart. reach : m, gap of a pair above which it is not listed.
+    margin : m, by which faces on the list of pairs may lie apart. reach : m, gap of a pair above which it is not
+    listed.
     """
 
     kn: float
