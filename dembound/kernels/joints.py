@@ -25,7 +25,7 @@ from dembound.kernels.law import is_tie
 from dembound.kernels.tables.joints import JointFaces
 
 PAIRS, STEPS, EVENTS, NEEDED = range(4)
-"""Places in `JointFaces.count`."""
+"""Places in `JointFaces.counts`."""
 
 FRICTION, CRACK, CLOSING = range(3)
 """Places in `JointFaces.lost`."""
@@ -142,15 +142,15 @@ def _push_pair(joint, k, u, v):
 @njit(**FAST)
 def _note_event(joint, k, torn, x, y):
     """Note at (x, y) m that pair k has lost its strength."""
-    number = joint.count[EVENTS]
+    number = joint.counts[EVENTS]
     if number < joint.events.shape[0]:
-        joint.events[number, 0] = joint.count[STEPS]
+        joint.events[number, 0] = joint.counts[STEPS]
         joint.events[number, 1] = joint.pairs.first[k]
         joint.events[number, 2] = joint.pairs.second[k]
         joint.events[number, 3] = x
         joint.events[number, 4] = y
         joint.events[number, 5] = 0.0 if torn else 1.0
-    joint.count[EVENTS] = number + 1
+    joint.counts[EVENTS] = number + 1
 
 
 @njit(**FAST)
@@ -180,7 +180,7 @@ def _begin_pair(pairs, q, f, g):
 def list_faces(joint, u):
     """List the pairs of faces that overlap, or lie apart by less than the margin, at displacements u (3, n)."""
     law, pairs, spare, split = joint.law, joint.pairs, joint.spare, joint.split
-    count, room = joint.count[PAIRS], joint.pairs.first.size
+    count, room = joint.counts[PAIRS], joint.pairs.first.size
     found, at = 0, 0
     for f in range(split):
         ax, ay = _end(joint, u, f, 0)
@@ -203,11 +203,11 @@ def list_faces(joint, u):
                     else:
                         _begin_pair(spare, found, f, g)
                 found += 1
-    joint.count[NEEDED] = max(joint.count[NEEDED], found)
+    joint.counts[NEEDED] = max(joint.counts[NEEDED], found)
     found = min(found, room)
     for k in range(found):
         _copy(spare, k, pairs, k)
-    joint.count[PAIRS] = found
+    joint.counts[PAIRS] = found
     for f in range(joint.disk.size):
         i = U(joint.disk[f])
         joint.listed[f, 0], joint.listed[f, 1] = u[U(0), i], u[U(1), i]
@@ -239,9 +239,9 @@ def push_faces(joint, u, v):
         joint.lost[c] = 0.0
     if _is_old(joint, u):
         list_faces(joint, u)
-    for k in range(joint.count[PAIRS]):
+    for k in range(joint.counts[PAIRS]):
         _push_pair(joint, k, u, v)
-    joint.count[STEPS] += 1
+    joint.counts[STEPS] += 1
 
 
 @njit(**FAST)
@@ -261,7 +261,7 @@ def _resist_chatter(joint, u_next, v, step, moved, work):
     for f in range(joint.disk.size):
         for c in range(3):
             kick[f, c] = 0.0
-    for k in range(joint.count[PAIRS]):
+    for k in range(joint.counts[PAIRS]):
         if not pairs.slides[k]:
             pairs.drag[k] = 0.0
             continue

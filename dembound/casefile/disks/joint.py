@@ -46,7 +46,7 @@ class Joint(Table):
     ten: float = quantity(0.0, unit="Pa", means="strength", help="tensile strength", ge=0.0)
     coh: float = quantity(0.0, unit="Pa", means="strength", help="cohesion", ge=0.0)
     dashpot: float = quantity(
-        1.0, unit="1", means="factor", help="normal dashpot of sliding faces, over ρ c_p of the ground", ge=0.0, le=2.0
+        1.0, unit="1", means="factor", help="normal dashpot of sliding faces, over ρ c_p of the ground", ge=0.0, le=10.0
     )
 
     @model_validator(mode="after")

@@ -3,10 +3,10 @@
 import numpy as np
 
 REACH = 2.0
-"""Largest distance from the foot of a disk's centre to an end of its interval, over its radius."""
+"""Largest distance from the foot of a disk's centre to an end of its interval, over the largest radius."""
 
 ALONE = 1.0
-"""The same at an end beyond which no other disk has a part of the line within `REACH`."""
+"""The same, over its own radius, at an end beyond which no other disk has a part of the line within `REACH`."""
 
 
 def intervals(along: np.ndarray, height: np.ndarray, radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -23,7 +23,7 @@ def intervals(along: np.ndarray, height: np.ndarray, radius: np.ndarray) -> tupl
     high = np.where(apart > 0.0, meet, np.inf).min(axis=1, initial=np.inf)
     low = np.where(apart < 0.0, meet, -np.inf).max(axis=1, initial=-np.inf)
     behind = ((apart == 0.0) & (power[None, :] < power[:, None])).any(axis=1)
-    reach, alone = REACH * radius, ALONE * radius
+    reach, alone = REACH * radius.max(initial=0.0), ALONE * radius
     low = np.where(low < along - reach, along - alone, low)
     high = np.where(high > along + reach, along + alone, high)
     there = (high > low) & ~behind

@@ -63,7 +63,7 @@ def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: sli
     Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it.
     """
     line = _Line(np.array(joint.points), box)
-    distance, place, _ = line.nearest(assembly.positions)
+    distance, place = line.nearest(assembly.positions)
     within = np.zeros(len(distance), dtype=np.bool_)
     within[body] = (place[body] > 0.0) & (place[body] < line.length)
     side = np.where(distance >= 0.0, 1, -1)
@@ -149,13 +149,13 @@ class _Line:
         self.begins = np.concatenate([[0.0], np.cumsum(self.lengths)])
         self.length = float(self.begins[-1])
 
-    def nearest(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def nearest(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Distance to the left (n,) m and place along the line (n,) m of the segment nearest to positions (n, 2) m.
 
-        Third its number (n,). Places are negative before its beginning, and go on beyond its end. Beyond an end at a
+        Places are negative before its beginning, and go on beyond its end. Beyond an end at a
         side of the body the joint goes on.
         """
-        least, found = np.full(len(positions), np.inf), np.zeros((3, len(positions)))
+        least, found = np.full(len(positions), np.inf), np.zeros((2, len(positions)))
         for number, (start, along, length) in enumerate(zip(self.points, self.along, self.lengths, strict=False)):
             x, y = (positions - start).T
             place, left = x * along[0] + y * along[1], y * along[0] - x * along[1]
@@ -164,13 +164,13 @@ class _Line:
             least = np.where(nearer, past, least)
             low = 0.0 if number > 0 else -np.inf
             high = length if number < len(self.lengths) - 1 else np.inf
-            here = self.begins[number] + np.clip(place, low, high)
-            found = np.where(nearer, np.stack([left, here, np.full(len(x), number)]), found)
-        left, here, number = found
+            on_line = self.begins[number] + np.clip(place, low, high)
+            found = np.where(nearer, np.stack([left, on_line]), found)
+        left, here = found
         tiny = 1e-6 * self.length
         here = np.maximum(here, tiny) if self.open[0] else here
         here = np.minimum(here, self.length - tiny) if self.open[1] else here
-        return left, here, number.astype(np.int64)
+        return left, here
 
     def faces(
         self, disks: np.ndarray, side: np.ndarray, positions: np.ndarray, radii: np.ndarray

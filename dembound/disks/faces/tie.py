@@ -83,7 +83,7 @@ class JointTie(Tie):
             closure=0.5 * pressure / kn,
             pairs=_empty_pairs(room),
             spare=_empty_pairs(room),
-            count=np.zeros(4, dtype=np.int64),
+            counts=np.zeros(4, dtype=np.int64),
             listed=np.zeros((count, 2)),
             gives=np.ascontiguousarray(gives[:, faces.disk].T),
             force=np.zeros((count, 3)),
@@ -98,14 +98,14 @@ class JointTie(Tie):
         bundle, joint = self._bundle, self.faces.joint
         rest = np.zeros((3, self._count))
         list_faces(bundle, rest)
-        found, pairs = slice(0, int(bundle.count[PAIRS])), bundle.pairs
+        found, pairs = slice(0, int(bundle.counts[PAIRS])), bundle.pairs
         pairs.length[found] = np.inf  # so that slip is kept
         one, other = pairs.first[found], pairs.second[found]
         pairs.slip[found] = 0.5 * (shear[one] + shear[other]) / bundle.law.ks
         pairs.intact[found] = joint.ten > 0.0 or joint.coh > 0.0
         pairs.bearing[found] = bundle.law.kn * (bundle.closure[one] + bundle.closure[other])
         push_faces(bundle, rest, rest)
-        bundle.count[STEPS] = 0
+        bundle.counts[STEPS] = 0
         bundle.lost[:] = 0.0
 
     def _stress(self, at_rest: StressAtRest | None, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -135,8 +135,8 @@ class JointTie(Tie):
 
     def _require_room(self) -> None:
         """Raise RunError if pairs of faces are missing."""
-        count, room = self._bundle.count, len(self._bundle.pairs.first)
-        if count[NEEDED] > room:
+        counts, room = self._bundle.counts, len(self._bundle.pairs.first)
+        if counts[NEEDED] > room:
             name = self.faces.joint.name
             raise RunError(f'disks are heaped up on joint "{name}": more than {room:,} pairs of faces touch there')
 
@@ -151,7 +151,7 @@ class JointTie(Tie):
     def stored(self) -> float:
         """Energy (J) in its springs at the last step."""
         bundle = self._bundle
-        return float(bundle.pairs.energy[: bundle.count[PAIRS]].sum())
+        return float(bundle.pairs.energy[: bundle.counts[PAIRS]].sum())
 
     @property
     def pressed(self) -> np.ndarray:
@@ -171,22 +171,22 @@ class JointTie(Tie):
     def acting(self) -> FacePairs:
         """The pairs that overlap."""
         pairs = self._bundle.pairs
-        chosen = np.flatnonzero(pairs.length[: self._bundle.count[PAIRS]] > 0.0)
+        chosen = np.flatnonzero(pairs.length[: self._bundle.counts[PAIRS]] > 0.0)
         return FacePairs(*(each[chosen] for each in pairs))
 
     def take_cracks(self) -> Cracks:
         """The places that lost their strength since the last call, as cracks between the disks of two faces."""
-        number = int(self._bundle.count[EVENTS])
+        number = int(self._bundle.counts[EVENTS])
         events = self._bundle.events[:number]
         both = events[:, 1:3].astype(np.int64)
         found = Cracks(events[:, 0].astype(np.int64), self.faces.disk[both], events[:, 3:5].copy(), events[:, 5] > 0.0)
-        self._bundle.count[EVENTS] = 0
+        self._bundle.counts[EVENTS] = 0
         return found
 
     def saved_arrays(self) -> Arrays:
         """The pairs with their history, and events not yet recorded."""
         bundle = self._bundle
-        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("count", "listed", "events")}
+        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("counts", "listed", "events")}
         return kept | {f"pair_{name}": values for name, values in bundle.pairs._asdict().items()}
 
     def restore(self, saved: Arrays) -> None:
@@ -196,8 +196,8 @@ class JointTie(Tie):
                 raise ValueError(f"{self.name}: {name} has the shape {saved[name].shape}, must have {values.shape}")
             values[...] = saved[name]
         bundle = self._bundle
-        if not (bundle.count >= 0).all() or bundle.count[PAIRS] > len(bundle.pairs.first):
-            raise ValueError(f"{self.name}: has no {bundle.count[PAIRS]} pairs")
+        if not (bundle.counts >= 0).all() or bundle.counts[PAIRS] > len(bundle.pairs.first):
+            raise ValueError(f"{self.name}: has no {bundle.counts[PAIRS]} pairs")
         faces = np.concatenate([bundle.pairs.first, bundle.pairs.second])
         if not ((faces >= 0) & (faces < len(self.faces.disk))).all():
             raise ValueError(f"{self.name}: a pair has faces that there are not")
@@ -205,7 +205,7 @@ class JointTie(Tie):
     def go_on_from(self, saved: Arrays) -> None:
         """Take over the history (arrays of `saved_arrays`) of the joint of a settled body; steps are counted anew."""
         self.restore(saved)
-        self._bundle.count[[STEPS, EVENTS]] = 0
+        self._bundle.counts[[STEPS, EVENTS]] = 0
 
 
 def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
@@ -229,5 +229,5 @@ def _empty_pairs(room: int) -> FacePairs:
 def _copied(bundle: JointFaces) -> JointFaces:
     """A bundle whose history can change without that of another."""
     pairs = FacePairs(*(each.copy() for each in bundle.pairs))
-    own = {name: getattr(bundle, name).copy() for name in ("count", "listed", "force", "lost", "events")}
+    own = {name: getattr(bundle, name).copy() for name in ("counts", "listed", "force", "lost", "events")}
     return bundle._replace(pairs=pairs, **own)
