@@ -58,8 +58,8 @@ class JointFaces(NamedTuple):
     law : its constants. disk : (m,) int64 slots of their disks; line : (m,) theirs in the support table. centre :
     (m, 2), ends (m, 4) m, of the disk and x, y of both ends of the face at the start; along (m, 2) unit vector; height
     (m,) m, of the centre from the face; closure (m,) m, by which the face is pressed in at the start.
-    pairs, spare : the pairs, and space to list them anew; counts (4,) int64: pairs listed, steps done, events noted, and
-    the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed.
+    pairs, spare : the pairs, and space to list them anew; counts (4,) int64 : pairs listed, steps done, events noted,
+    and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed.
     gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held or prescribed. force, kick : (m, 3)
     N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost (3,) J: friction, crack and closing.
     events : (k, 6) step, first and second face, x, y m, whether by shear, of places that lost their strength.
