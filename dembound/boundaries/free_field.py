@@ -12,10 +12,10 @@ from pydantic import model_validator
 
 from dembound.boundaries.edge import normal_axis
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
-from dembound.boundaries.viscous import Dashpots, Viscous
+from dembound.boundaries.viscous import BearingDashpots, Viscous
 
 
-class FreeField(Dashpots):
+class FreeField(BearingDashpots):
     """Continues as ground without the body: F = F_ff − βρcD·(v − v_ff) (Z eq. 21); left and right only.
 
     F_ff is the seam force of the free-field column, v_ff the velocity of the particle's twin in it.

@@ -135,10 +135,10 @@ class Dashpots(Keeping):
 
 
 class Bearing(Table):
-    """Springs of a bottom on the motion of its particles relative to the ground beyond, beside its dashpots.
+    """Springs of a side on the motion of its particles relative to the ground beyond, beside its dashpots.
 
-    F = −(αG/L)D·(u − u_g), counted from rest: u_g is the motion of the particle's twin in the free-field column or,
-    without a column, the mean motion of the bottom; L is the length of the bottom, G = ρc_s² of the dashpots' medium.
+    F = −(αG/L)D·(u − u_g), counted from rest: u_g is the motion of the particle's twin in the free-field column or, of
+    a bottom without a column, its mean motion; L is the length of the side, G = ρc_s² of the dashpots' medium.
     """
 
     alpha_n: float = quantity(
@@ -150,22 +150,23 @@ class Bearing(Table):
 
 
 class BearingDashpots(Dashpots):
-    """Dashpots that, at the bottom, may have springs on relative motion beside them."""
+    """Dashpots that, at the bottom and beside a free-field column, may have springs on relative motion beside them."""
 
     bearing: bool | Bearing | None = quantity(
         None,
         unit="1",
-        help="whether a bottom has springs on the motion relative to the ground beyond it, which bear what its weight "
-        "at rest does not; or a table of their factors alpha_n and alpha_s; absent: where the side has an intact zone",
+        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
+        "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
+        "an intact zone",
     )
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Springs of another side than the bottom."""
+        """Springs of a side beyond which no ground is known to move."""
         yield from super().problems(side, tables)
-        if self.bearing not in (None, False) and (side != "bottom" or "bar" in tables):
-            yield f"boundary.{side}.bearing: is for the bottom of disks"
+        if self.bearing not in (None, False) and ("bar" in tables or not (side == "bottom" or self.needs_column)):
+            yield f"boundary.{side}.bearing: is for the bottom of disks, and for free-field sides"
 
-    def dashpots_alone(self) -> Self:
+    def dashpots_alone(self) -> Dashpots:
         """The side without springs."""
         return self.model_copy(update={"bearing": False}) if self.bearing not in (None, False) else self
 

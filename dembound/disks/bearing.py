@@ -1,5 +1,6 @@
-"""The springs of a bottom of dashpots on its motion relative to the ground beyond."""
+"""The springs of sides of dashpots on their motion relative to the ground beyond."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,19 +21,45 @@ class Springs(NamedTuple):
     weight: np.ndarray
     stiffness: np.ndarray
 
+    def stiffness_at(self, nodes: np.ndarray) -> np.ndarray:
+        """Stiffness (m, 2) N/m at nodes (m,), some of which are its own."""
+        found = np.zeros((len(nodes), 2))
+        found[np.searchsorted(nodes, self.node)] = self.stiffness
+        return found
+
 
 def bearing_springs(
-    bearing: Bearing, table: BearingDashpots, edge: Edge, medium: BoundaryMedium, twin: np.ndarray | None
+    bearing: Bearing,
+    table: BearingDashpots,
+    media: Sequence[tuple[Edge, BoundaryMedium]],
+    twin: np.ndarray | None,
 ) -> Springs:
-    """The springs (αG/L)D at the particles of a bottom; twin (n,) : of each node in the free-field column, if any.
+    """The springs (αG/L)D at the particles of a side; twin (n,) : of each node in the free-field column, if any.
 
-    G is that of the dashpots' medium, or of the rock beyond the bottom, L the length of the bottom.
+    media : the parts of the side, by layer. G is that of the dashpots' medium, or of the rock beyond, L the length of
+    the side.
     """
-    modulus = medium.shear_modulus if table.rock is None else table.rock.shear_modulus
-    stiffness = np.outer(edge.widths * modulus / edge.length, (bearing.alpha_s, bearing.alpha_n))
-    order = np.argsort(edge.nodes, kind="stable")
-    node, weight = edge.nodes[order], edge.widths[order] / edge.widths.sum()
+    length = sum(edge.length for edge, _ in media)
+    across, along = bearing.alpha_n, bearing.alpha_s
+    parts = []
+    for edge, medium in media:
+        modulus = medium.shear_modulus if table.rock is None else table.rock.shear_modulus
+        factors = (across, along) if edge.axis == 0 else (along, across)
+        parts.append(np.outer(edge.widths * modulus / length, factors))
+    node, stiffness = np.concatenate([edge.nodes for edge, _ in media]), np.concatenate(parts)
+    widths = np.concatenate([edge.widths * (edge.axis == 1) for edge, _ in media])
+    order = np.argsort(node, kind="stable")
+    node, weight = node[order], widths[order] / max(widths.sum(), np.finfo(float).tiny)
     return Springs(node, np.full(len(node), -1) if twin is None else twin[node], weight, stiffness[order])
+
+
+def together(each: Sequence[Springs]) -> Springs:
+    """The springs of several sides in one table; a node of two sides has those of both."""
+    node, first = np.unique(np.concatenate([one.node for one in each]), return_index=True)
+    twin, weight = np.concatenate([one.twin for one in each])[first], np.zeros(len(node))
+    for one in each:
+        weight[np.searchsorted(node, one.node)] += one.weight
+    return Springs(node, twin, weight, sum((one.stiffness_at(node) for one in each), np.zeros((len(node), 2))))
 
 
 class BearingTie(Tie):

@@ -293,7 +293,7 @@ class DiskBody(Scene):
 
     @property
     def bearing(self) -> Springs | None:
-        """The springs of the bottom on relative motion; None without any."""
+        """The springs of sides on relative motion; None without any."""
         return None
 
     @cached_property

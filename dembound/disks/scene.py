@@ -12,7 +12,7 @@ from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import GridSizes
-from dembound.disks.bearing import Springs, bearing_springs
+from dembound.disks.bearing import Springs, bearing_springs, together
 from dembound.disks.body import DiskBody, with_half_contacts, with_layers
 from dembound.disks.columns import (
     UPRIGHT,
@@ -36,7 +36,7 @@ from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.pressure import in_run
 from dembound.disks.side_forces import side_forces
-from dembound.disks.sides import boundary_medium, medium_of_side, sides_of, tied_of
+from dembound.disks.sides import boundary_medium, media_of, medium_of_side, sides_of, tied_of
 from dembound.disks.stepping.fields import particle_stress
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.supports import steady, supports_of
@@ -79,17 +79,31 @@ class DiskScene(DiskBody):
 
     @cached_property
     def bearing(self) -> Springs | None:  # type: ignore[override]  # computed once
-        """The springs of the bottom on relative motion; None without any."""
-        bearing, table = self.case.bearing, self.case.side("bottom")
-        if bearing is None:
-            return None
-        assert isinstance(table, BearingDashpots)
-        return bearing_springs(bearing, table, self.sides["bottom"], medium_of_side(self, "bottom"), self.twin)
+        """The springs of sides on relative motion; None without any."""
+        return together([*self._bearing_by_side.values()]) if self._bearing_by_side else None
 
     @property
-    def borne(self) -> Mapping[str, np.ndarray]:
-        """Disks (k,) of the bottom with springs on relative motion, by side."""
-        return {} if self.bearing is None else {"bottom": self.bearing.node}
+    def borne(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
+        """Disks (k,) with springs on relative motion by side, and its shares (k, 2) of their forces."""
+        springs = self.bearing
+        if springs is None:
+            return {}
+        found = {}
+        for side, own in self._bearing_by_side.items():
+            every = springs.stiffness[np.searchsorted(springs.node, own.node)]
+            found[side] = own.node, np.divide(own.stiffness, every, out=np.zeros_like(every), where=every > 0.0)
+        return found
+
+    @cached_property
+    def _bearing_by_side(self) -> dict[str, Springs]:
+        found = {}
+        for side, bearing in self.case.bearing.items():
+            table = self.case.side(side)
+            assert isinstance(table, BearingDashpots)
+            below = [(self.sides[side], medium_of_side(self, side))]  # without the columns beside it
+            media = below if side == "bottom" else media_of(self, side)
+            found[side] = bearing_springs(bearing, table, media, self.twin)
+        return found
 
     @cached_property
     def steady_load(self) -> np.ndarray:

@@ -302,8 +302,11 @@ class Scene(ABC):
         return {}
 
     @property
-    def borne(self) -> Mapping[str, np.ndarray]:
-        """Nodes (k,) with springs on their motion relative to the ground beyond, by their side; by default none."""
+    def borne(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
+        """Nodes (k,) with springs on their motion relative to the ground beyond, by side; by default none.
+
+        Also the side's shares (k, 2) of their forces along x and y.
+        """
         return {}
 
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:

@@ -147,9 +147,9 @@ class NodeSides:
             batches: list[_Batch] = []
             if shares is not None:
                 batches += self._of_supports(number, edge, np.union1d(edge.nodes, tied), shares)
-            borne = self._whole.borne.get(name, np.zeros(0, dtype=np.int64))
+            borne, share = self._whole.borne.get(name, (np.zeros(0, dtype=np.int64), np.zeros((0, 2))))
             for component in range(2):
-                batches += self._split(kinds.BORNE, number, component, -1, borne, np.ones(len(borne)))
+                batches += self._split(kinds.BORNE, number, component, -1, borne, share[:, component])
             for component in range(3):
                 batches += self._split(kinds.TIED, number, component, -1, tied, np.ones(len(tied)))
             if shares is not None and name in shares.power:

@@ -77,15 +77,16 @@ def test_the_ground_comes_to_rest_and_its_base_to_its_place() -> None:
     # 0.1 J is a mean velocity of 0.8 mm/s, 1/600 of the wave's
     assert found.kinetic[-1] < 0.1
     assert np.abs(found.drift).max() < 1e-5
-    # springs of αG bear what of the weight has moved away from the sides: 1e-4 m is 2 % of the weight
-    assert np.abs(found.base[-1]).max() < 1e-4
+    # springs bear what has moved away from the sides: a twentieth of the weight, 0.2 MN, on those along the bottom,
+    # which are the softest, α_s G = 0.4 GPa; with the sides' it moves less
+    assert np.abs(found.base[-1]).max() < 5e-4
 
 
 def test_without_springs_the_base_creeps_and_without_a_zone_it_sinks() -> None:
     """What each of the two does: dashpots alone have no force at rest."""
-    creeps = broken(boundary__bottom__bearing=False)
-    assert np.abs(creeps.drift).max() > 20.0 * max(1e-5, float(np.abs(broken().drift).max()))
     sides = ("left", "right", "bottom")
+    creeps = broken(**{f"boundary__{side}__bearing": False for side in sides})
+    assert np.abs(creeps.drift).max() > 20.0 * max(1e-5, float(np.abs(broken().drift).max()))
     sinks = broken(**{f"boundary__{side}__intact": 0 for side in sides})
     assert sinks.drift[1] < -0.01
 

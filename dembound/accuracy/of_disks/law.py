@@ -110,8 +110,8 @@ def elastic_twin(
     twin = next((each for each in twins if keeps(case, each, kept)), None)
     if twin is None:
         return None
-    if case.bearing is not None:  # a default of the case's law and static stage
-        twin = with_changes(twin, {"boundary.bottom.bearing": case.bearing.model_dump()})
+    for side, bearing in case.bearing.items():  # a default of the case's law and static stage
+        twin = with_changes(twin, {f"boundary.{side}.bearing": bearing.model_dump()})
     try:
         factor, diameter = _factor(watched, planned, most, runner, reflections)
     except DemboundError:  # no companion can run

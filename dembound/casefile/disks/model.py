@@ -192,9 +192,10 @@ class DiskCase(Case):
         return intact_depths(self.materials, self.boundary, self.static)
 
     @property
-    def bearing(self) -> Bearing | None:
-        """The springs of the bottom on the motion relative to the ground beyond it; None without any."""
-        return bearing_of(self.side("bottom"), self.material, self.intact)
+    def bearing(self) -> dict[str, Bearing]:
+        """The springs of sides on their motion relative to the ground beyond, by side; sides without are left out."""
+        found = {side: bearing_of(side, table, self.material, self.intact) for side, table in self.boundary.items()}
+        return {side: each for side, each in found.items() if each is not None}
 
     @property
     def free_field_sides(self) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """The ``[static]`` table, the tables of its sides, and its mistakes that depend on other tables.
 
-Where bonds may break, zones beside sides whose bonds do not, and springs of the bottom, belong to them.
+Where bonds may break, zones beside sides whose bonds do not, and springs of sides on relative motion, belong to them.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -198,12 +198,12 @@ def intact_depths(
     return depths
 
 
-def bearing_of(table: Boundary, material: Material, intact: Mapping[str, int]) -> Bearing | None:
-    """The springs of the bottom on relative motion; None without any. intact : see `intact_depths`."""
-    if not isinstance(table, BearingDashpots):
+def bearing_of(side: str, table: Boundary, material: Material, intact: Mapping[str, int]) -> Bearing | None:
+    """The springs of a side on relative motion; None without any. intact : see `intact_depths`."""
+    if not isinstance(table, BearingDashpots) or not (side == "bottom" or table.needs_column):
         return None
     if table.bearing is None:
-        return Bearing() if LAWS[material.law].has_history and "bottom" in intact else None
+        return Bearing() if LAWS[material.law].has_history and side in intact else None
     if isinstance(table.bearing, Bearing):
         return table.bearing
     return Bearing() if table.bearing else None

@@ -296,7 +296,7 @@ class DiskSystem(RecordedDisks):
             seam.let_go(self.balance.let_go)
 
     def borne(self, supported: np.ndarray) -> np.ndarray:
-        """Forces (s, 3) N of the springs of the bottom on the nodes (s,) of the support table."""
+        """Forces (s, 3) N of the springs on relative motion on the nodes (s,) of the support table."""
         return super().borne(supported) if self._bearing is None else self._bearing.force_on(supported)
 
     def _begin_at_rest(self) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.boundaries.description import side_in_words
 from dembound.boundaries.platen import Keeping
+from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import FREE_FIELD, Load
 from dembound.casefile.disks.monitor_rows import shown_names
@@ -232,7 +233,7 @@ STEADY, LATE, SAMPLES = 0.01, 0.75, 50
 
 
 def intact_facts(scene: DiskScene) -> Entries:
-    """Where the zones lie in which bonds do not break, and the springs of the bottom."""
+    """Where the zones lie in which bonds do not break, and the springs of sides on relative motion."""
     zones = scene.intact_zones
     if zones:
         depths: dict[int, list[str]] = {scene.case.intact[side]: [] for side in zones}
@@ -246,15 +247,19 @@ def intact_facts(scene: DiskScene) -> Entries:
         column = "; all of the free-field column" if any(side in scene.case.column_sides for side in zones) else ""
         yield "bonds kept", f"{', '.join(parts)}: {inside:,} of {count:,} disks have bonds that do not break{column}"
     if (springs := scene.bearing) is not None:
-        assert scene.case.bearing is not None
         beyond = "the free-field column" if scene.twin is not None else "its own mean, so that they bear no net force"
-        factors = f"α_n {scene.case.bearing.alpha_n:g} and α_s {scene.case.bearing.alpha_s:g}"
+        by_side: dict[Bearing, list[str]] = {}
+        for side, bearing in scene.case.bearing.items():
+            by_side.setdefault(bearing, []).append(side)
+        factors = ", ".join(
+            f"α_n {each.alpha_n:g} and α_s {each.alpha_s:g} at {' and '.join(sides)}" for each, sides in by_side.items()
+        )
         stiffness = float(springs.stiffness[:, 1].sum())
         sags = ""
         if scene.twin is not None and stiffness > 0.0 and (weight := _weight(scene)) > 0.0:
             sag = TENTH * weight / stiffness
             sags = f"; a tenth of the weight more sags by {with_unit(sag, 'm')}, in proportion to the width of the body"
-        yield "bottom springs", f"{factors}, on the motion relative to {beyond}{sags}"
+        yield "side springs", f"{factors}, on the motion relative to {beyond}{sags}"
 
 
 def intact_warnings(scene: DiskScene) -> Iterator[str]:

@@ -141,6 +141,7 @@ def test_a_body_that_spins_under_the_elastic_law_grows_as_said() -> None:
 
 
 PERIODIC = around("periodic", "left", "right")
+PLAIN_COLUMN = {"type": "free_field", "bearing": False}
 
 
 def scene(sides: dict[str, Any], **bearing: float) -> DiskScene:
@@ -164,7 +165,28 @@ def forces(body: DiskScene, moved: np.ndarray, datum: np.ndarray | None = None) 
     return found
 
 
-TWINS_OR_MEAN = pytest.mark.parametrize("sides", [around("free_field", "left", "right"), PERIODIC])
+def test_a_free_field_side_pulls_back_its_disks_by_their_share_of_the_shear_modulus() -> None:
+    kind = {"type": "free_field", "bearing": {"alpha_n": 3.0, "alpha_s": 0.25}}
+    sides = around(kind, "left", "right")
+    body = scene(sides, alpha_n=0.0, alpha_s=0.5)
+    left, bottom = body.sides["left"], body.sides["bottom"]
+    moved = np.zeros((3, body.count))
+    moved[:2, left.nodes[:, None]] = [[[0.01]], [[0.02]]]
+    found, modulus = forces(body, moved), medium_of_side(body, "left").shear_modulus
+    stiffness = np.outer([3.0, 0.25], modulus * left.widths / left.length)
+    in_left = {int(node): k for k, node in enumerate(left.nodes)}
+    both = [k for k, node in enumerate(bottom.nodes) if int(node) in in_left]  # disks of the corner have both springs
+    corner = [in_left[int(bottom.nodes[k])] for k in both]
+    stiffness[:, corner] += np.outer([0.5, 0.0], modulus * bottom.widths[both] / bottom.length)
+    np.testing.assert_allclose(found[:2, left.nodes], -stiffness * [[0.01], [0.02]], rtol=1e-13)
+    assert both
+    total = np.zeros((body.count, 2))
+    for node, share in body.borne.values():
+        total[node] += share
+    np.testing.assert_allclose(total[left.nodes], 1.0, rtol=1e-15)
+
+
+TWINS_OR_MEAN = pytest.mark.parametrize("sides", [around(PLAIN_COLUMN, "left", "right"), PERIODIC])
 
 
 @TWINS_OR_MEAN

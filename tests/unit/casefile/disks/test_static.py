@@ -149,7 +149,7 @@ def test_sides_without_forces_at_rest_or_bonds_without_strength_have_none() -> N
     assert case_of(sides, material=TOUGH).intact == {}
     assert case_of(sides, material=TOUGH, layer=[{"thickness": 2.0, "pb_coh": 1e6}, {}]).intact == ALL
     elastic = case_of(sides, material=BREAKS | {"law": "elastic"}, output={"load_factor": True})  # has load factors
-    assert (elastic.intact, elastic.bearing) == (ALL, None)
+    assert (elastic.intact, elastic.bearing) == (ALL, {})
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,14 @@ def test_sides_without_forces_at_rest_or_bonds_without_strength_have_none() -> N
     ],
 )
 def test_bottoms_of_dashpots_have_springs_where_they_have_a_zone(bottom, expected) -> None:
-    assert case_of(COLUMNS | {"bottom": bottom}).bearing == expected
+    assert case_of(COLUMNS | {"bottom": bottom}).bearing.get("bottom") == expected
+
+
+def test_free_field_sides_have_springs_where_they_have_a_zone_and_sides_without_a_column_none() -> None:
+    assert case_of(COLUMNS | {"bottom": BOTTOM}).bearing.keys() == ALL.keys()
+    without = {"left": {"type": "free_field", "bearing": False}, "right": {"type": "free_field", "intact": 0}}
+    assert case_of(without | {"bottom": BOTTOM}).bearing.keys() == {"bottom"}
+    assert case_of(VISCOUS | {"bottom": BOTTOM}).bearing.keys() == {"bottom"}
 
 
 def test_keys_of_other_sides_and_of_bars_are_refused() -> None:
@@ -172,4 +179,4 @@ def test_keys_of_other_sides_and_of_bars_are_refused() -> None:
     bar = 'method.type = "finite_difference"\nbar = {length = 1.0, spacing = 0.1, density = 1.0, wave_speed = 1.0}\n'
     said = "boundary.right.{}: is for {} of disks"
     assert problems_of(f"{bar}run.duration = 1.0\n{right}intact = 2") == [said.format("intact", "sides")]
-    assert problems(right, "bearing = true") == [said.format("bearing", "the bottom")]
+    assert problems(right, "bearing = true") == [f"{said.format('bearing', 'the bottom')}, and for free-field sides"]

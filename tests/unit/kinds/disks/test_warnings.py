@@ -180,14 +180,16 @@ def test_zones_and_springs_are_among_the_facts() -> None:
     # a tenth of the weight over α_n G ΣD/L of the bottom
     weight = -float(body.steady_load[1, body.column_count :].sum())
     sag = 1e6 * 0.1 * weight / float(body.bearing.stiffness[:, 1].sum())
-    assert facts["bottom springs"].startswith("α_n 1 and α_s 0.5, on the motion relative to the free-field column; ")
-    assert f"sags by {sag:.3g} µm" in facts["bottom springs"]
-    assert "they bear no net force" in dict(intact_facts(breaking(VISCOUS | {"bottom": BOTTOM})))["bottom springs"]
+    assert facts["side springs"].startswith(
+        "α_n 1 and α_s 0.5 at left and right and bottom, on the motion relative to the free-field column; "
+    )
+    assert f"sags by {sag:.3g} µm" in facts["side springs"]
+    assert "they bear no net force" in dict(intact_facts(breaking(VISCOUS | {"bottom": BOTTOM})))["side springs"]
     assert dict(intact_facts(breaking(VISCOUS | {"bottom": BOTTOM | {"intact": 0}}))).keys() == {"bonds kept"}
 
 
 def test_sides_without_a_zone_are_warned_of_where_forces_at_rest_act() -> None:
-    ground = FREE_FIELD | {"bottom": BOTTOM | {"intact": 0}}
+    ground = around({"type": "free_field", "bearing": False}, "left", "right") | {"bottom": BOTTOM | {"intact": 0}}
     said, drifts = intact_warnings(breaking(ground))
     assert drifts.startswith("boundary: dashpots alone bear this ground")  # as there are no springs either
     assert said.startswith("boundary.bottom.intact: is 0, but forces of the static stage go on acting there")
