@@ -52,22 +52,23 @@ def _height_at(place, x0, y0, x1, y1):
 @njit(**FAST)
 def _push_pair(joint, k, u, v):
     """Forces of pair k on the disks of its faces, added to joint.force, and what it has taken, to joint.lost."""
-    law, pairs, lost = joint.law, joint.pairs, joint.lost
-    f, g = pairs.first[k], pairs.second[k]
+    law, pairs, lost, now = joint.law, joint.pairs, joint.lost, joint.now
+    f, g = U(pairs.first[k]), U(pairs.second[k])
     i, j = U(joint.disk[f]), U(joint.disk[g])
-    tx, ty = joint.along[f, 0] + joint.along[g, 0], joint.along[f, 1] + joint.along[g, 1]
+    tx, ty = joint.along[f, U(0)] + joint.along[g, U(0)], joint.along[f, U(1)] + joint.along[g, U(1)]
     size = np.sqrt(tx * tx + ty * ty)
     tx, ty = tx / size, ty / size
-    ax, ay = _end(joint, u, f, 0)
-    bx, by = _end(joint, u, f, 1)
-    cx, cy = _end(joint, u, g, 0)
-    dx, dy = _end(joint, u, g, 1)
+    ax, ay = now[f, U(0)], now[f, U(1)]
+    bx, by = now[f, U(2)] - ax, now[f, U(3)] - ay
+    cx, cy = now[g, U(0)] - ax, now[g, U(1)] - ay
+    dx, dy = now[g, U(2)] - ax, now[g, U(3)] - ay
     # along the line and from it, seen from the first end of the first face
-    b, height_b = tx * (bx - ax) + ty * (by - ay), tx * (by - ay) - ty * (bx - ax)
-    c, height_c = tx * (cx - ax) + ty * (cy - ay), tx * (cy - ay) - ty * (cx - ax)
-    d, height_d = tx * (dx - ax) + ty * (dy - ay), tx * (dy - ay) - ty * (dx - ax)
+    b, c, d = tx * bx + ty * by, tx * cx + ty * cy, tx * dx + ty * dy
     low, high = max(0.0, c), min(b, d)
     length = max(high - low, 0.0)
+    if length == 0.0 and pairs.length[k] == 0.0:
+        return
+    height_b, height_c, height_d = tx * by - ty * bx, tx * cy - ty * cx, tx * dy - ty * dx
     middle = 0.5 * (low + high)
     moved = tx * (u[U(0), i] - u[U(0), j]) + ty * (u[U(1), i] - u[U(1), j])
     moved += u[U(2), i] * joint.height[f] + u[U(2), j] * joint.height[g]
@@ -239,8 +240,11 @@ def push_faces(joint, u, v):
         joint.lost[c] = 0.0
     if _is_old(joint, u):
         list_faces(joint, u)
+    for f in range(joint.disk.size):
+        joint.now[f, 0], joint.now[f, 1] = _end(joint, u, f, 0)
+        joint.now[f, 2], joint.now[f, 3] = _end(joint, u, f, 1)
     for k in range(joint.counts[PAIRS]):
-        _push_pair(joint, k, u, v)
+        _push_pair(joint, U(k), u, v)
     joint.counts[STEPS] += 1
 
 

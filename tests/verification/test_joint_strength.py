@@ -14,11 +14,15 @@ LEVEL = 1.0
 
 @pytest.fixture
 def pulled(lab):
+    """See `halves`, of a joint that fails."""
+    return halves(lab, {"ten": TENSION, "coh": COHESION, "fric": FRICTION})
+
+
+def halves(lab, keys):
     """A function (rise, shift) m of the upper half of 2 × 2 m of lattice -> mean stresses of its joint, in its turn."""
     case = lab.case("A", (2.0, 2.0), held=())
     joint = {"name": "joint", "points": [[-1.0, LEVEL], [3.0, LEVEL]], "kn": STIFFNESS, "ks": STIFFNESS}
-    joint |= {"ten": TENSION, "coh": COHESION, "fric": FRICTION}
-    scene = build(with_changes(case, {"joint": [joint]}))
+    scene = build(with_changes(case, {"joint": [joint | keys]}))
     step = 1.0  # so long that friction follows at once
     gives = np.zeros((3, scene.count))
     tie = JointTie(scene.faces[0], scene.positions, scene.ground, gives, scene.layout, step)
@@ -63,6 +67,18 @@ def test_cohesion_and_friction(pulled):
     assert tie.take_cracks().shear.all()
     back = move(closed, 1.2 * way - 2.0 * FRICTION * pressure / tie.faces.stiffness[1])
     np.testing.assert_allclose(back[1], FRICTION * pressure, rtol=1e-9)
+
+
+def test_faces_that_come_to_lie_opposite_each_other_begin_without_shear(lab):
+    move, tie = halves(lab, {})
+    for shift in np.linspace(0.0, 0.75, 151):
+        move(0.0, shift)
+    pairs = tie.acting
+    apart = tie.faces.ends[pairs.second].mean(axis=1)[:, 0] - tie.faces.ends[pairs.first].mean(axis=1)[:, 0]
+    # those a diameter ahead have met at the start, those two ahead after a shift of one, within a step
+    assert set(np.round(apart, 9)) == {0.5, 1.0}
+    met = np.where(apart > 0.75, 0.5, 0.0)
+    np.testing.assert_allclose(pairs.shear, -tie.faces.stiffness[1] * (0.75 - met), atol=0.006 * tie.faces.stiffness[1])
 
 
 def test_sliding_back_and_forth_loses_twice_friction_times_the_way(pulled):

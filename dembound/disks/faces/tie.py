@@ -85,6 +85,7 @@ class JointTie(Tie):
             spare=_empty_pairs(room),
             counts=np.zeros(4, dtype=np.int64),
             listed=np.zeros((count, 2)),
+            now=np.zeros((count, 4)),
             gives=np.ascontiguousarray(gives[:, faces.disk].T),
             force=np.zeros((count, 3)),
             kick=np.zeros((count, 3)),
@@ -229,5 +230,5 @@ def _empty_pairs(room: int) -> FacePairs:
 def _copied(bundle: JointFaces) -> JointFaces:
     """A bundle whose history can change without that of another."""
     pairs = FacePairs(*(each.copy() for each in bundle.pairs))
-    own = {name: getattr(bundle, name).copy() for name in ("counts", "listed", "force", "lost", "events")}
+    own = {name: getattr(bundle, name).copy() for name in ("counts", "listed", "now", "force", "lost", "events")}
     return bundle._replace(pairs=pairs, **own)

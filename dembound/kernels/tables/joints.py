@@ -60,8 +60,9 @@ class JointFaces(NamedTuple):
     (m,) m, of the centre from the face; closure (m,) m, by which the face is pressed in at the start.
     pairs, spare : the pairs, and space to list them anew; counts (4,) int64 : pairs listed, steps done, events noted,
     and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed.
-    gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held or prescribed. force, kick : (m, 3)
-    N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost (3,) J: friction, crack and closing.
+    now : (m, 4) m, ends in this step. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held
+    or prescribed. force, kick : (m, 3) N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost
+    (3,) J: friction, crack and closing.
     events : (k, 6) step, first and second face, x, y m, whether by shear, of places that lost their strength.
     """
 
@@ -78,6 +79,7 @@ class JointFaces(NamedTuple):
     spare: FacePairs
     counts: np.ndarray
     listed: np.ndarray
+    now: np.ndarray
     gives: np.ndarray
     force: np.ndarray
     kick: np.ndarray
