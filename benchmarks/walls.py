@@ -80,7 +80,7 @@ def exact(
     """
     from dembound.disks.scene import build
     from dembound.disks.surroundings.ground_waves import incident_in
-    from dembound.disks.surroundings.mesh import medium_of
+    from dembound.disks.surroundings.media import medium_of
     from dembound.exact.explosion import cavity_motion
     from dembound.exact.scattering import PlaneWave, scattered_motion
     from dembound.exact.solid import Solid

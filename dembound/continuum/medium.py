@@ -103,12 +103,67 @@ class Layered:
         return self.media[int(self.number_at(np.array([height]))[0])]
 
 
-Ground = Medium | Layered
-"""What a continuum consists of: one medium, or layers of several."""
+@dataclass(frozen=True)
+class Unlike:
+    """Ground whose layers differ left and right of a body, below which they are the same.
+
+    Attributes
+    ----------
+    left, right : the layers of either side; media are numbered from the bottom, those of the left first.
+    """
+
+    left: Layered
+    right: Layered
+
+    @property
+    def media(self) -> tuple[Medium, ...]:
+        """The media of the left side, then those of the right one, each from the bottom up."""
+        return self.left.media + self.right.media
+
+    @property
+    def joints(self) -> tuple[float, ...]:
+        """The heights of the boundaries at either side, ascending, m."""
+        return tuple(sorted({*self.left.joints, *self.right.joints}))
+
+    @property
+    def between_joints(self) -> tuple[tuple[Medium, Medium], ...]:
+        """The media left and right between each two of the joints of either side, from the bottom up."""
+        ends = (*self.joints, np.inf)
+        each = [
+            [side.media[int(np.searchsorted(side.joints, end))] for end in ends] for side in (self.left, self.right)
+        ]
+        return tuple(zip(*each, strict=True))
+
+    def number_at(self, heights: np.ndarray, is_right: np.ndarray) -> np.ndarray:
+        """Number (k,) of the medium at heights (k,) m, of the right side or of the left one; on a joint the lower."""
+        return np.where(is_right, len(self.left.media) + self.right.number_at(heights), self.left.number_at(heights))
+
+    @property
+    def only(self) -> Medium:
+        """Raises ValueError, as ground that is not layered has one."""
+        raise ValueError("needs one medium, not layers")
+
+    def at(self, height: float) -> Medium:
+        """The medium at a height (m) at which both sides are the same; raises ValueError elsewhere."""
+        one, other = self.left.at(height), self.right.at(height)
+        if one != other:
+            raise ValueError(f"the media at y = {height:g} m are not the same at both sides")
+        return one
 
 
-def layered(ground: Ground) -> Layered:
+Ground = Medium | Layered | Unlike
+"""What a continuum consists of: one medium, layers of several, or layers that differ at its sides."""
+
+
+def layered(ground: Ground) -> Layered | Unlike:
     """The layers of a ground; one medium is a single layer."""
+    return one_side(ground) if isinstance(ground, Medium) else ground
+
+
+def one_side(ground: Ground) -> Layered:
+    """The layers of ground that is the same at both sides; raises ValueError for other ground."""
+    if isinstance(ground, Unlike):
+        raise ValueError("needs the layers of one side")
     return ground if isinstance(ground, Layered) else Layered((ground,))
 
 

@@ -10,7 +10,7 @@ from dembound.boundaries.edge import SIDES
 from dembound.continuum.axis import WHOLE
 from dembound.continuum.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.continuum.layer import USUAL, Absorption, Profile, along_in
-from dembound.continuum.medium import Ground, Layered, Medium, layered
+from dembound.continuum.medium import Ground, Layered, Medium, Unlike, layered
 from dembound.continuum.mesh import Mesh
 from dembound.damping import Attenuation, factors_of
 from dembound.kernels import damped_grid  # noqa: F401  # it registers its law
@@ -28,7 +28,8 @@ class GridBody:
 
     Attributes
     ----------
-    mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints. mechanisms :
+    mesh, medium : its elements, and density and moduli; of layers, edges of elements lie on their joints; of unlike
+    sides the elements right of the mesh's box have the right one. mechanisms :
     of the damping of each layer, whose moduli are those of the medium at one frequency, None without; () without any.
     absorption : settings of the layers of the mesh.
     thickness : m, across the plane; by default that of the disks.
@@ -55,14 +56,17 @@ class GridBody:
                 raise ValueError(f"the joint of layers at y = {joint:g} m lies inside elements")
 
     @cached_property
-    def ground(self) -> Layered:
+    def ground(self) -> Layered | Unlike:
         """The layers of its medium."""
         return layered(self.medium)
 
     @cached_property
     def layer(self) -> np.ndarray:
         """(E,) number of the layer that every element is in."""
-        return self.ground.number_at(self.mesh.rectangles[:, 1::2].mean(axis=1))
+        heights = self.mesh.rectangles[:, 1::2].mean(axis=1)
+        if isinstance(self.ground, Unlike):
+            return self.ground.number_at(heights, self.mesh.is_right)
+        return self.ground.number_at(heights)
 
     @property
     def count(self) -> int:

@@ -13,11 +13,11 @@ from dembound.boundaries.support import Supports
 from dembound.casefile.disks.load import FREE_FIELD
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
-from dembound.disks.columns import COLUMNS, free_field_attributes, level_at, parts_of
+from dembound.disks.columns import COLUMNS, free_field_attributes, parts_of, rest_beside
 from dembound.disks.contacts.layout import Rows
 from dembound.disks.faces.found import Faces
 from dembound.disks.intact import intact_disks, intact_zones
-from dembound.disks.material.at_rest import StressAtRest, stress_at_rest
+from dembound.disks.material.at_rest import AtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
@@ -54,15 +54,32 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     """Replace the contacts of a layered ground, also across seams, by types with the springs of their zones."""
     if not ground.is_layered:
         return assembly, tuple(seams)
-    up, types = assembly.positions[:, 1], 2 * len(ground.brick.pairs)
-    pairing = ground.pairing_of(*up[assembly.pairs].T)
+    places, types = assembly.positions, 2 * len(ground.brick.pairs)
+    first, second = assembly.pairs.T
+    pairing = ground.pairing_of(places[first], places[second])
     assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
     own = []
     for seam in seams:
-        owner, other = up[np.repeat(seam.twin[seam.node], seam.contact_counts)], up[seam.neighbour]
-        pairing = ground.pairing_of(*np.where(seam.twin_is_second, [other, owner], [owner, other]))
+        owner, other = places[np.repeat(seam.twin[seam.node], seam.contact_counts)], places[seam.neighbour]
+        swapped = seam.twin_is_second[:, None]
+        pairing = ground.pairing_of(np.where(swapped, other, owner), np.where(swapped, owner, other))
         own.append(replace(seam, contact_type=seam.contact_type + types * pairing))
     return assembly, tuple(own)
+
+
+def layer_attributes(case: DiskCase) -> dict[str, Any]:
+    """The names of the layers of a case, and heights (m) of joints from the surface down, of each side if they differ.
+
+    Of either side also the numbers of its layers, from 1.
+    """
+    if not case.joints:
+        return {}
+    names = {"layer_names": [*case.layer_names]}
+    if not case.is_unlike:
+        return names | {"joints": [*case.joints]}
+    own = {f"{side}_layers": [1 + number for number in case.numbers_beside(side)] for side in case.sides_of_ground}
+    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in case.sides_of_ground}
+    return names | {"meet": case.ground.meet} | own | joints
 
 
 @dataclass(frozen=True)
@@ -115,14 +132,14 @@ class DiskBody(Scene):
     @property
     def attributes(self) -> dict[str, Any]:
         """The attributes of a record's header in addition to those of every run."""
-        layers = {"layer_names": [*self.case.layer_names], "joints": [*self.case.joints]} if self.case.joints else {}
-        return {"seed": getattr(self.case.packing, "seed", 0), "column": self.column_count, **layers}
+        seed = getattr(self.case.packing, "seed", 0)
+        return {"seed": seed, "column": self.column_count, **layer_attributes(self.case)}
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """Data of every particle for the record, by name: values (n, …) and unit."""
         assembly, bonded = self.assembly, self.ground.moduli.pb_emod > 0.0
-        layer = self.ground.layer_of(assembly.positions[:, 1]) + 1
+        layer = self.ground.layer_of(assembly.positions) + 1
         return {
             "position": (assembly.positions, "m"),
             "radius": (assembly.radii, "m"),
@@ -322,16 +339,16 @@ class DiskBody(Scene):
         return intact_disks(self.case, self.intact_zones, self.disk_count, self.column_count)
 
     @cached_property
-    def at_rest(self) -> StressAtRest | None:
+    def at_rest(self) -> AtRest | None:
         """The stress of undisturbed ground with which contacts begin; None if they begin without forces."""
         return stress_at_rest(self.case, self.ground, self.surface)
 
-    def at_rest_of(self, part: str) -> StressAtRest | None:
-        """The stress with which the contacts of a part begin: of a column with a lower top, that below its own."""
+    def at_rest_of(self, part: str) -> AtRest | None:
+        """The stress with which the contacts of a part begin: of a column that of the ground of its side."""
         seam = self.seams[COLUMNS.index(part)] if part in COLUMNS else None
-        if self.surface is None or seam is None:
+        if seam is None or (self.surface is None and not self.case.is_unlike):
             return self.at_rest
-        return stress_at_rest(self.case, self.ground, level_at(self.surface, seam))
+        return rest_beside(self.case, self.ground, seam, self.surface)
 
     @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds

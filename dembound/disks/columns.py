@@ -9,7 +9,7 @@ from dembound.boundaries import Boundary
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.roller import Roller
 from dembound.casefile.disks.model import DiskCase
-from dembound.disks.material.at_rest import StressAtRest, levels_of, stress_at_rest
+from dembound.disks.material.at_rest import AtRest, levels_of, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings, surroundings_of
 from dembound.disks.surroundings.edges import ON_IT
@@ -26,9 +26,20 @@ COLUMNS = ("column", "right_column")
 """The names of the parts that are free-field columns."""
 
 
+def side_of(seam: Seam) -> str:
+    """The side of whose ground a column is: the right one of the second of two, else the left one."""
+    return "right" if seam.sides == ("right",) else "left"
+
+
 def level_at(surface: np.ndarray, seam: Seam) -> np.ndarray:
     """The point (2, 1) m of a surface (2, k) at the side for which a column stands."""
     return surface[:, [-1]] if seam.sides == ("right",) else surface[:, [0]]
+
+
+def rest_beside(case: DiskCase, ground: PackedMaterial, seam: Seam, surface: np.ndarray | None) -> AtRest | None:
+    """The stress at rest of a column: of the ground of its side below its own surface; None without one."""
+    side, own = side_of(seam), None if surface is None else level_at(surface, seam)
+    return stress_at_rest(case.beside(side), ground.beside(side), own)
 
 
 def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
@@ -37,17 +48,16 @@ def parts_of(count: int, seams: Sequence[Seam]) -> dict[str, slice]:
     return {**columns, "body": slice(columns_end(seams), count)}
 
 
-def levels_in(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: StressAtRest | None
-) -> np.ndarray | None:
+def levels_in(case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_rest: AtRest | None) -> np.ndarray | None:
     """A number (n,) of each disk, the same for copies with the same constants; None if all copies have.
 
-    Rows of bricks have constants of their own in layers, or under a history-dependent law with K0.
+    Rows of bricks have constants of their own in layers, or under a history-dependent law with K0, and bricks of a row
+    where its layers differ at both sides.
     """
     has_k0 = ground.law.has_history and case.static is not None and case.static.k0 is not None
     if not (ground.is_layered or has_k0):
         return None
-    return levels_of(assembly, ground.brick, at_rest if has_k0 else None)
+    return levels_of(assembly, ground, at_rest if has_k0 else None)
 
 
 def levels_by_part(
@@ -60,8 +70,8 @@ def levels_by_part(
     """Levels of the disks of each part, see `levels_in`; those of columns under their own stress at rest."""
     found = {}
     for (name, disks), seam in zip_longest(parts_of(len(assembly.radii), seams).items(), seams):
-        own = surface if surface is None or seam is None else level_at(surface, seam)
-        found[name] = levels_in(case, ground, assembly.part(disks), stress_at_rest(case, ground, own))
+        own = stress_at_rest(case, ground, surface) if seam is None else rest_beside(case, ground, seam, surface)
+        found[name] = levels_in(case, ground, assembly.part(disks), own)
     return found
 
 
@@ -70,9 +80,10 @@ def standing_of(
 ) -> tuple[Standing, ...]:
     """The free-field columns of a body: one, or one for each side where the ground left and right differs."""
     sides = case.column_sides
-    tops = {side: Level.of(ground, body, floors[side], side).height for side in sides if side in floors}
+    tops = {side: Level.of(ground.beside(side), body, floors[side], side).height for side in sides if side in floors}
     highest, lowest = (of(tops.get(side, case.box[3]) for side in ("left", "right")) for of in (max, min))
-    if not {"left", "right"} <= {*sides} or highest - lowest <= ON_IT * ground.brick.mean_diameter:
+    same = not case.is_unlike and highest - lowest <= ON_IT * ground.brick.mean_diameter
+    if same or not {"left", "right"} <= {*sides}:
         return (Standing(sides, next(iter(tops.values()), None)),) if sides else ()
     left = tuple(side for side in sides if side != "right")
     return Standing(left, tops.get("left")), Standing(("right",), tops.get("right"))
@@ -85,6 +96,7 @@ def foot_of(
 
     beside : the continuum round the body, if its elements have the same heights, as below two columns.
     """
+    case, ground = case.beside(side_of(seam)), ground.beside(side_of(seam))
     column, ground = assembly.part(seam.disks), ground_beneath(case, ground)
     if beside is None:
         outline, inner = Outline.of(case, ground, column, ("bottom",), UPRIGHT), None
@@ -113,7 +125,7 @@ def free_field_attributes(
     case: DiskCase, seams: Sequence[Seam], outside: Surroundings | None, place: np.ndarray
 ) -> dict[str, float | str]:
     """The side whose ground a free field at a place (2,) m is in, "left" if both are one, and y (m) of its surface."""
-    unlike = len(seams) > 1 or (not seams and outside is not None and bool(outside.levels))
+    unlike = len(seams) > 1 or (not seams and (case.is_unlike or (outside is not None and bool(outside.levels))))
     side = "right" if unlike and place[0] > case.middle else "left"
     top = seams[-1 if side == "right" else 0].top if seams else None
     if top is None and outside is not None and (outside.levels or outside.free_surface):

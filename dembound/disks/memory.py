@@ -20,8 +20,9 @@ from dembound.disks.contacts.layout import LEAST_FILL
 from dembound.disks.contacts.pairs import PIECE
 from dembound.disks.contacts.row_plan import columns_of
 from dembound.disks.material.case_material import nominal_moduli
+from dembound.disks.surroundings.elements import mesh_of
 from dembound.disks.surroundings.near_fields import signals_of
-from dembound.disks.surroundings.settings import expected_tops, mesh_of, settings_of
+from dembound.disks.surroundings.settings import expected_tops, settings_of
 from dembound.kernels.compiler.lanes import LANES
 from dembound.motion.memory import Storage, for_paraview, largest, must_fit, recorded, total
 from dembound.places import is_within

@@ -108,7 +108,7 @@ def _moving(
 
     beside : the side whose ground it is, where it is not as high at both; None: that of the place.
     """
-    corrector = np.moveaxis(ground.at(float(place[1])).continuum.corrector[:, [kind]], 1, 2)
+    corrector = np.moveaxis(ground.at(float(place[1]), float(place[0])).continuum.corrector[:, [kind]], 1, 2)
 
     def motion(times: np.ndarray) -> np.ndarray:
         moved = waves.motion
@@ -202,7 +202,7 @@ def _in_continuum(
     """The motion of a disk of the brick, `kind`, at a place (2,) m of a continuum; twin : its twin's number."""
     mesh = outside.body.mesh
     at, slope = interpolation(mesh, place[None]), slopes(mesh, place[None])[:, 0]
-    share, own = np.zeros((slope.shape[1], 3, 3)), ground.at(place[1])
+    share, own = np.zeros((slope.shape[1], 3, 3)), ground.at(float(place[1]), float(place[0]))
     share[:, [0, 1], [0, 1]] = at.weight[0, :, None]
     for component in (0, 1):
         share[:, :, component] += (own.continuum.corrector[:, kind, INDEX[component]] @ slope).T

@@ -212,7 +212,7 @@ def shares_of(outline: Outline, part: tuple[float, float], nearest: np.ndarray) 
 
 def _on_bonds(scene: DiskBody, body: Assembly, cut: CutContacts) -> np.ndarray:
     """Forces and moments (e, 3) of cut bonds on their disks where the packing is under 1 Pa everywhere."""
-    forces, layer = np.empty((len(cut.node), 3)), scene.ground.layer_of(body.positions[cut.node, 1])
+    forces, layer = np.empty((len(cut.node), 3)), scene.ground.layer_of(body.positions[cut.node])
     for number, ground in enumerate(scene.ground.undamped.materials):
         gradient = np.linalg.lstsq(ground.material_tensor, np.array([-1.0, -1.0, 0.0, 0.0]), rcond=None)[0]
         on_disks = CutBonds.of(ground, cut, body.positions).on_disks

@@ -1,6 +1,6 @@
 """Builds the scene of a case: packs, tiles, makes holes, adds supports and the free-field column."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,6 +22,7 @@ from dembound.disks.columns import (
     level_at,
     levels_by_part,
     parts_of,
+    side_of,
     standing_fast,
     standing_of,
 )
@@ -30,8 +31,9 @@ from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.faces.found import faces_of, without_crossing
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
-from dembound.disks.material.layered import layered
+from dembound.disks.material.layered import LayeredGround, layered
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.pressure import in_run
@@ -283,9 +285,11 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     the factors used beside the body. It has no continuum at its ends and no column of its own: a side of type
     "outside" is free.
     """
-    case, brick = scene.case, scene.ground.brick
+    seam = scene.seams[number]
+    case, ground = scene.case.beside(side_of(seam)), scene.ground.beside(side_of(seam))
+    brick = ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
-    medium = boundary_medium(scene.ground.at(case.box[1]), axis=1)
+    medium = boundary_medium(ground.at(case.box[1]), axis=1)
     upright = {
         side: table.with_numbers(scene.edges[side], medium) if side in scene.edges else table
         for side, table in case.boundary.items()
@@ -308,11 +312,11 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
         monitor=(),
         ground=case.ground.level(),
     )
-    standing = Standing((), scene.seams[number].top)
+    standing = Standing((), seam.top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
-    alone_scene = _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
-    surface = None if scene.surface is None else level_at(scene.surface, scene.seams[number])
-    intact = scene.intact is not None and bool(scene.intact[scene.seams[number].disks].all())
+    alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
+    surface = None if scene.surface is None else level_at(scene.surface, seam)
+    intact = scene.intact is not None and bool(scene.intact[seam.disks].all())
     return replace(alone_scene, surface=surface, all_intact=intact)
 
 
@@ -324,10 +328,19 @@ def ground_of(case: DiskCase) -> PackedMaterial:
     materials = [
         make_packed_material(brick, each, case.motion.held, along, mechanisms_of(case, each.quality_factor), place)
         for place, each in reversed([*zip(places, case.materials, strict=True)])
-    ]
+    ][::-1]
     if len(materials) == 1:
         return confined(materials[0], case)
-    return layered(materials, case.joints[::-1], case.packing.origin[1])
+    if case.ground.meet is None:
+        return _in_layers(case, materials)
+    numbers = {side: case.numbers_beside(side) for side in case.sides_of_ground}
+    sides = [_in_layers(case.beside(side), [materials[number] for number in own]) for side, own in numbers.items()]
+    return UnlikeGround.of(sides, [*numbers.values()], case.ground.meet)
+
+
+def _in_layers(case: DiskCase, materials: Sequence[PackedMaterial]) -> LayeredGround:
+    """The ground of a case that is the same at both sides; materials : of its layers from the surface down."""
+    return layered(materials[::-1], case.joints[::-1], case.packing.origin[1])
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:

@@ -12,7 +12,7 @@ from dembound.boundaries.support import Edge
 from dembound.disks.body import DiskBody
 from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.pairs import PIECE, Piece
-from dembound.disks.material.at_rest import StressAtRest, gradients_of_stresses, rest_forces
+from dembound.disks.material.at_rest import AtRest, gradients_of_stresses, rest_forces
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.cut_bonds import CutBonds
@@ -80,10 +80,10 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
         x, heights = (body.positions[ends.node] + 0.5 * ends.vectors(scene.ground.brick)).T
         at_rest = scene.at_rest_of(name)
         assert at_rest is not None
-        layer, each = scene.ground.layer_of(heights), np.zeros((3, len(heights)))
+        layer, each = scene.ground.layer_of(np.column_stack([x, heights])), np.zeros((3, len(heights)))
         for number in np.unique(layer):
             own = layer == number
-            ground = scene.ground.at(float(heights[own][0])).undamped
+            ground = scene.ground.at(float(heights[own][0]), float(x[own][0])).undamped
             bonds = CutBonds.of(ground, ends.only(own), body.positions)
             each[:, own] = part[own] * _at_rest(ground, at_rest, ends.only(own), bonds, heights[own], x[own])
         for component in range(3):
@@ -93,7 +93,7 @@ def forces_at_rest(scene: DiskBody) -> np.ndarray:
 
 def _at_rest(
     ground: PackedMaterial,
-    at_rest: StressAtRest,
+    at_rest: AtRest,
     ends: CutContacts,
     bonds: CutBonds,
     heights: np.ndarray,
@@ -101,7 +101,7 @@ def _at_rest(
 ) -> np.ndarray:
     """Forces and moments (3, e) of contact ends at heights (e,) m on their disks, in ground of one material.
 
-    x : (e,) m, their places, see `StressAtRest.at`.
+    x : (e,) m, their places, see `AtRest.at`.
     """
     if not at_rest.slides:
         pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights, x))

@@ -38,10 +38,10 @@ def boundary_medium(ground: PackedMaterial, axis: int) -> BoundaryMedium:
 
 def media_of(scene: DiskBody, side: str) -> list[tuple[Edge, BoundaryMedium]]:
     """The parts of a side within one layer, with the medium that each represents; the lowest first."""
-    ground, edge = scene.ground, scene.edges[side]
+    ground, edge = ground_beside(scene, side), scene.edges[side]
     if not isinstance(ground, LayeredGround):
         return [(edge, boundary_medium(ground, edge.axis))]
-    layer = ground.layer_of(edge.positions[:, 1])
+    layer = ground.layer_of(edge.positions)
     found = []
     for each in ground.layers:
         chosen = layer == each.layer
@@ -53,13 +53,19 @@ def media_of(scene: DiskBody, side: str) -> list[tuple[Edge, BoundaryMedium]]:
 
 
 def layers_beside(scene: DiskBody, side: str) -> list[int]:
-    """Number of the layer, from the top, of each of the parts of a side, see `media_of`."""
-    return [int(scene.ground.layer_of(edge.positions[:1, 1])[0]) for edge, _ in media_of(scene, side)]
+    """Number of the layer, from the top of its ground, of each of the parts of a side, see `media_of`."""
+    ground = ground_beside(scene, side)
+    return [int(ground.layer_of(edge.positions[:1])[0]) for edge, _ in media_of(scene, side)]
+
+
+def ground_beside(scene: DiskBody, side: str) -> PackedMaterial:
+    """The ground beyond a side; below the disks it is the same at both sides, and the top has none."""
+    return scene.ground.beside("right" if side == "right" else "left")
 
 
 def ground_at(scene: DiskBody, side: str) -> PackedMaterial:
     """The material at a side; in a layered ground that of the lowest of its layers."""
-    return scene.ground.at(scene.case.box[3 if side == "top" else 1])
+    return ground_beside(scene, side).at(scene.case.box[3 if side == "top" else 1])
 
 
 def medium_of_side(scene: DiskBody, side: str) -> BoundaryMedium:

@@ -11,7 +11,7 @@ from dembound.continuum.medium import layered
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import front_of, slowest_speed
 from dembound.disks.surroundings.ground_waves import incident_in
-from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.media import medium_of
 from dembound.motion.paths import Source
 from dembound.table import EVERYWHERE, Box
 

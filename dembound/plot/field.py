@@ -1,9 +1,10 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 import h5py
 import numpy as np
@@ -42,6 +43,15 @@ SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", po
 """The meaning of a positive stress."""
 
 
+class LayersOfSide(NamedTuple):
+    """Layers from the surface down: their names, the heights of their joints, and from which x to which they are, m."""
+
+    names: tuple[str, ...]
+    joints: tuple[float, ...]
+    low: float = -math.inf
+    high: float = math.inf
+
+
 @dataclass(frozen=True)
 class Disks:
     """The disks of a run before the motion.
@@ -49,8 +59,8 @@ class Disks:
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
-    those that still have their disks; layers: their names and joints, the heights (m) between them, from the surface
-    down, none of uniform ground; faults: points (k, 2) m on the line of each of the case's joints.
+    those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
+    ground. faults: points (k, 2) m on the line of each joint.
     """
 
     positions: np.ndarray
@@ -62,8 +72,7 @@ class Disks:
     column: int = 0
     continuum: ContinuumCells | None = None
     holes: tuple[Hole, ...] = ()
-    layers: tuple[str, ...] = ()
-    joints: tuple[float, ...] = ()
+    layers: tuple[LayersOfSide, ...] = ()
     faults: tuple[np.ndarray, ...] = ()
 
     @cached_property
@@ -158,8 +167,7 @@ def read_disks(file: h5py.File) -> Disks:
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
         holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
-        layers=tuple(map(text_of, file.attrs.get("layer_names", ()))),
-        joints=tuple(map(float, file.attrs.get("joints", ()))),
+        layers=tuple(_layers_in(file)),
         faults=_read_faults(file),
     )
 
@@ -171,6 +179,19 @@ def _read_faults(file: h5py.File) -> tuple[np.ndarray, ...]:
         return tuple(np.array(joint["points"], dtype=float).reshape(-1, 2) for joint in joints)
     except (CaseError, KeyError, TypeError, ValueError):
         return ()
+
+
+def _layers_in(file: h5py.File) -> Iterator[LayersOfSide]:
+    """The layers of the ground in an open record, see `Disks`."""
+    names = tuple(map(text_of, file.attrs.get("layer_names", ())))
+    if "meet" not in file.attrs:
+        if names:
+            yield LayersOfSide(names, tuple(map(float, file.attrs["joints"])))
+        return
+    meet = float(file.attrs["meet"])
+    for side, low, high in (("left", -math.inf, meet), ("right", meet, math.inf)):
+        own = tuple(names[int(number) - 1] for number in file.attrs[f"{side}_layers"])
+        yield LayersOfSide(own, tuple(map(float, file.attrs[f"{side}_joints"])), low, high)
 
 
 @dataclass(frozen=True)

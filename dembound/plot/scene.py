@@ -1,6 +1,8 @@
 """The whole scene at one time, or a long one at several times, with disks coloured by a field."""
 
+import math
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,7 +16,7 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
-from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
+from dembound.plot.field import Disks, Field, FieldName, LayersOfSide, read_disks, read_field
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
 
@@ -226,20 +228,39 @@ def _mark_faults(panel: Axes, disks: Disks) -> None:
 
 def _mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
     """Thin lines at the joints of layers, and the names of layers where a window has room; inches per metre."""
-    if not disks.joints:
-        return
-    left, right, bottom, top = window.extent
+    bottom, top = window.extent[2:]
+    dashes: Sequence[dict[str, Any]] = {"color": "white"}, {"color": "black", "linestyle": (0, (6, 3))}
     looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
-    for joint in disks.joints:  # dashes of two colours, visible on all others
-        panel.axhline(joint, color="white", **looks)
-        panel.axhline(joint, color="black", linestyle=(0, (6, 3)), **looks)
     plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    ends = np.clip([top, *disks.joints, bottom], bottom, top)
-    for name, high, low in zip(disks.layers, ends[:-1], ends[1:], strict=True):
-        room = 72.0 * scale * np.array([right - left, high - low])
-        if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
-            place: dict[str, Any] = {"xytext": (-3.0, -3.0), "textcoords": "offset points", "ha": "right", "va": "top"}
-            panel.annotate(name, (right, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+    for own in disks.layers:
+        left, right = np.clip((own.low, own.high), *window.extent[:2]).tolist()
+        for joint, way in product(own.joints, dashes):  # dashes of two colours, visible on all others
+            panel.plot((left, right), (joint, joint), **way, **looks)
+        heights = np.clip([top, *own.joints, bottom], bottom, top)
+        for name, high, low in zip(own.names, heights[:-1], heights[1:], strict=True):
+            room = 72.0 * scale * np.array([right - left, high - low])
+            if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
+                place: dict[str, Any] = {
+                    "xytext": (-3.0, -3.0), "textcoords": "offset points", "ha": "right", "va": "top",
+                }  # fmt: skip
+                panel.annotate(name, (right, high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+    for way in dashes if len(disks.layers) > 1 else ():
+        panel.plot((disks.layers[0].high,) * 2, (_one_below(disks.layers), top), **way, **looks)
+
+
+def _one_below(sides: Sequence[LayersOfSide]) -> float:
+    """Height y (m) below which two sides have the same layers."""
+    left, right = sides
+    lowest = math.inf
+    for one, other, *ends in zip(
+        left.names[::-1], right.names[::-1], left.joints[::-1], right.joints[::-1], strict=False
+    ):
+        if one != other:
+            break
+        lowest = min(ends)
+        if ends[0] != ends[1]:
+            break
+    return lowest
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:

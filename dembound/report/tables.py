@@ -142,7 +142,7 @@ def layers(runs: Sequence[ReportedRun]) -> Table | None:
     """The layers of the grounds from the surface down, with their joints as packed; None without any."""
     rows = [
         [
-            layer["name"],
+            f"{layer['name']}, {layer['side']}" if "side" in layer else layer["name"],
             run.name,
             f"{layer['top']:.6g} to {layer['bottom']:.6g} m",
             f"{layer['density']:.5g} kg/m³",

@@ -6,7 +6,9 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             place from the folder of results, source_digest, its SHA-256; title, case (its text),
                             keys (all, as JSON), kind ("disks", "bar"), version, size, time_step, step_limit, steps,
                             complete, late (s, all motion, by where waves enter); of disks seed, with layers
-                            layer_names and joints (m, heights between them), from the surface down; of a bar loaded,
+                            layer_names and joints (m, heights between them), from the surface down; where they differ
+                            left and right of x = meet (m), left_layers, left_joints and right_layers, right_joints
+                            in place of joints, numbers from 1; of a bar loaded,
                             which of its ends is, and ends, their types,
                             without ranges also density, section, youngs_modulus, wave_speed, attenuation; of a run that
                             was continued to another time regular_steps, those of the run as it was begun; of a

@@ -60,6 +60,7 @@ def in_one_layer(case: DiskCase, side: str, motion: Motion) -> tuple[DiskCase, l
 
     Raises CaseError where factors β that suit the layers along the side differ by more than `ALIKE`.
     """
+    case = case.beside("right" if side == "right" else "left")
     ground, axis, number = ground_of(case), normal_axis(side), 0 if motion == "p" else 1
     if not isinstance(ground, LayeredGround):
         return case, []

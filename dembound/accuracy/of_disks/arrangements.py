@@ -19,9 +19,10 @@ from dembound.disks import step_cost
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings.edges import BAND as FLOOR
-from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.elements import mesh_of
+from dembound.disks.surroundings.media import medium_of
 from dembound.disks.surroundings.near_fields import extents, signals_of
-from dembound.disks.surroundings.settings import expected_tops, least_element, mesh_of, settings_of
+from dembound.disks.surroundings.settings import expected_tops, least_element, settings_of
 from dembound.errors import CaseError
 from dembound.table import Box
 

@@ -34,8 +34,9 @@ from dembound.disks.memory import stands_in_rows
 from dembound.disks.reduced import OneRow
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import own_step, step_limit
-from dembound.disks.surroundings.mesh import medium_of
-from dembound.disks.surroundings.settings import expected_tops, mesh_of, settings_of
+from dembound.disks.surroundings.elements import mesh_of
+from dembound.disks.surroundings.media import medium_of
+from dembound.disks.surroundings.settings import expected_tops, settings_of
 from dembound.errors import DemboundError
 from dembound.motion.kind import Plan
 from dembound.packings import Packing

@@ -79,6 +79,13 @@ def _require_no_joints(case: DiskCase) -> None:
         raise CaseError(["joint: errors of motion beside joints are not predicted; compare runs with smaller disks"])
 
 
+def require_one_ground(case: DiskCase) -> None:
+    """Raise CaseError for ground whose layers differ left and right, of which errors are not predicted."""
+    if case.is_unlike:
+        said = "errors are not predicted where the layers left and right differ; compare with sides farther away"
+        raise CaseError([f"ground.meet: {said}"], case.name)
+
+
 def _require_known(case: DiskCase) -> None:
     """Raise CaseError where errors, or the body itself, depend on unknown properties of other disks and sides."""
     problems = []
@@ -127,6 +134,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         require_linear(case.material.law)
         _require_no_joints(case)
+        require_one_ground(case)
         return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
     def truth(self, case: DiskCase) -> Truth:
@@ -172,6 +180,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """
         require_linear(case.material.law)
         _require_no_joints(case)
+        require_one_ground(case)
         _require_known(case)
         kept = [*kept, "packing.radius"] if of == "disks" else kept
         watch.begins("the packing, and the time step")
@@ -215,16 +224,19 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def extended(self, case: DiskCase, most: int) -> Extended:
         """The scene with more bricks beyond its sides."""
+        require_one_ground(case)
         return extended_disks(case, most)
 
     def exact(self, case: DiskCase) -> Exact[DiskCase] | None:
         """Plane waves, or one of the problems of `exact`; raises CaseError if the loads match none of them."""
+        require_one_ground(case)
         if (plane := ExactPlaneWave.of(case) or ExactLayeredColumn.of(case)) is not None:
             return plane
         return ExactContinuum.of(case) if case.load or case.incident else None
 
     def chart_choices(self, case: DiskCase) -> Named:
         """Coarser disks, half the step, other sides and a box in the ground."""
+        require_one_ground(case)
         return disk_choices(case)
 
     def hides_sides(self, case: DiskCase) -> bool:
@@ -245,6 +257,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def of_reference(self, case: DiskCase, motions: Motions, time_step: float) -> Causes:
         """All causes known by formula: dispersion, steps, walls, disks near loads, sides that waves enter through."""
+        require_one_ground(case)
         plane = {
             name: replace(own, values={q: v[:, :2] for q, v in own.values.items()}) for name, own in motions.items()
         }
@@ -254,6 +267,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """The continuum and walls by formula."""
         _require_no_joints(scene.case)
         require_linear(scene.case.material.law)
+        require_one_ground(scene.case)
         return quick_causes(scene)
 
 

@@ -42,6 +42,9 @@ class Ground(Table):
         help="free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the "
         "folder of the case; level over four diameters at the sides of the disks; absent: the top of the disks",
     )
+    meet: float | None = quantity(
+        None, unit="m", means="place", help='x of the vertical plane between layers of side "left" and "right"'
+    )
 
     _points: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")
@@ -65,6 +68,10 @@ class Ground(Table):
     def level(self) -> "Ground":
         """The ground without its surface."""
         return Ground(**self.model_dump(exclude={"surface"}, exclude_unset=True))
+
+    def alike(self) -> "Ground":
+        """The ground without the plane between its sides."""
+        return self if self.meet is None else self.model_copy(update={"meet": None})
 
     @property
     def points(self) -> Points:

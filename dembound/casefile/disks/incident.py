@@ -206,6 +206,8 @@ def not_level(side: str, table: Boundary, tables: Mapping[str, Any]) -> Iterator
         yield f"boundary.{side} without springs"
     if tables["hole"]:
         yield "ground without holes"
+    if tables["ground"] and tables["ground"].meet is not None:
+        yield "layers that are the same at both sides, without ground.meet"
     held = tables["motion"] and tables["motion"].held
     lateral = {name: sides.get(name) for name in ("left", "right")}
     taking = [name for name, each in lateral.items() if each and each.factors and not each.needs_column and not held]

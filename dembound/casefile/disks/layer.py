@@ -48,6 +48,9 @@ class Layer(Table):
         None, unit="m", means="length", help="thickness; the last layer may have none and goes on below", gt=0.0
     )
     bottom: float | None = quantity(None, unit="m", means="place", help="height y at which it ends, for thickness")
+    side: Literal["left", "right"] | None = quantity(
+        None, unit="1", help="the side of ground.meet at which it is; absent: at both"
+    )
     density: float | None = _as_in_material("density")
     p_wave_speed: float | None = _as_in_material("p_wave_speed")
     s_wave_speed: float | None = _as_in_material("s_wave_speed")
@@ -122,6 +125,11 @@ def completed_by_layers(tables: Mapping[str, Any]) -> tuple[Mapping[str, Any], l
     return {**tables, "material": {**material, **added}}, lacking
 
 
+def stack(layers: Sequence[Layer | None], side: str) -> list[tuple[int, Layer]]:
+    """The layers of one side, its own and the common ones, from the surface down, with their numbers from 0."""
+    return [(number, layer) for number, layer in enumerate(layers) if layer and layer.side in (None, side)]
+
+
 def bottoms(layers: Sequence[Layer], surface: float) -> list[float]:
     """Height y (m) at which each layer ends, −∞ without an end. surface : height of the free surface, m."""
     found, top = list[float](), surface
@@ -132,6 +140,11 @@ def bottoms(layers: Sequence[Layer], surface: float) -> list[float]:
             top = -float("inf") if layer.thickness is None else top - layer.thickness
         found.append(top)
     return found
+
+
+def place_of(number: int, layer: Layer) -> str:
+    """The place of a layer in messages, such as ``layer[1, soil]``; number : from 0."""
+    return f"layer[{number + 1}{f', {layer.name}' if layer.name else ''}]"
 
 
 def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
@@ -150,8 +163,13 @@ def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     if (below := tables["boundary"].get("bottom")) is not None and below.is_periodic:
         yield 'layer: boundary.bottom is "periodic", below which the surface follows again; layers need another side'
     if tables["ground"] and tables["packing"] and not ("bottom" in tables["boundary"] and below is None):
-        goes_on = below is not None and below.is_outside
-        yield from _problems_of_heights(layers, tables["packing"], tables["ground"].box(tables["packing"]), goes_on)
+        goes_on, box = below is not None and below.is_outside, tables["ground"].box(tables["packing"])
+        lines = [
+            line
+            for side in ("left", "right")
+            for line in _problems_of_heights(stack(layers, side), tables["packing"], box, goes_on)
+        ]
+        yield from dict.fromkeys(lines)
 
 
 def _problems_of_material(place: str, layer: Layer, material: Material) -> Iterator[str]:
@@ -163,13 +181,19 @@ def _problems_of_material(place: str, layer: Layer, material: Material) -> Itera
             yield f"{place}.{line}"
 
 
-def _problems_of_heights(layers: Sequence[Layer], packing: Packing, box: Box, goes_on: bool) -> Iterator[str]:
-    """Layers that have no end or no room, are too thin, or leave ground below; goes_on : it does so below its box."""
+def _problems_of_heights(
+    numbered_layers: Sequence[tuple[int, Layer]], packing: Packing, box: Box, goes_on: bool
+) -> Iterator[str]:
+    """Layers that have no end or no room, are too thin, or leave ground below; goes_on : it does so below its box.
+
+    numbered_layers : of one side, see `stack`.
+    """
+    layers = [layer for _, layer in numbered_layers]
     lowest, surface, least = box[1], box[3], THINNEST * 2.0 * packing.radius
     heights, near = [surface, *bottoms(layers, surface)], TYPED * max(abs(box[1]), abs(box[3]), packing.radius)
-    for number, (layer, (top, bottom)) in enumerate(zip(layers, pairwise(heights), strict=True), start=1):
-        last, key = number == len(layers), "thickness" if layer.bottom is None else "bottom"
-        place = f"layer[{number}{f', {layer.name}' if layer.name else ''}].{key}"
+    for (number, layer), (top, bottom) in zip(numbered_layers, pairwise(heights), strict=True):
+        last, key = layer is layers[-1], "thickness" if layer.bottom is None else "bottom"
+        place = f"{place_of(number, layer)}.{key}"
         if layer.thickness is None and layer.bottom is None:
             if not last:
                 yield f"{place}: is missing; only the last layer may go on below, give thickness or bottom"
@@ -188,7 +212,7 @@ def _problems_of_heights(layers: Sequence[Layer], packing: Packing, box: Box, go
                 f"{place}: ends at {bottom:.10g} m, below the bottom of the ground at {lowest:.10g} m, where nothing "
                 "goes on; leave it out, or make the ground higher"
             )
-        if number > 1 and not goes_on and top < lowest + least - near:
+        if layer is not layers[0] and not goes_on and top < lowest + least - near:
             yield (
                 f"{place}: the layer begins at {top:.10g} m, must have two diameters of the disks above the bottom of "
                 f"the ground at {lowest:.10g} m"

@@ -11,7 +11,7 @@ from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.joint import Joint
-from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms
+from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, intact_depths
@@ -103,11 +103,44 @@ class DiskCase(Case):
 
     @property
     def joints(self) -> tuple[float, ...]:
-        """Heights y (m) of the planes between layers, from the uppermost down."""
+        """Heights y (m) of the planes between layers, from the uppermost down; of unlike sides those of both."""
+        if self.is_unlike:
+            return tuple(sorted({*self.beside("left").joints, *self.beside("right").joints}, reverse=True))
         return tuple(bottoms(self.layer, self.box[3])[:-1])
 
+    @property
+    def is_unlike(self) -> bool:
+        """Whether the layers at the left and right differ, see `Ground.meet`."""
+        return self.ground.meet is not None
+
+    @property
+    def sides_of_ground(self) -> tuple[str, ...]:
+        """The sides whose layers are those of all the ground, or of their part of it where these differ."""
+        return ("left", "right") if self.is_unlike else ("left",)
+
+    def numbers_beside(self, side: str) -> list[int]:
+        """Numbers, from 0, of the layers of the left or right side, from the surface down."""
+        return [number for number, _ in stack(self.layer, side)]
+
+    def beside(self, side: str) -> "DiskCase":
+        """The case with the layers of the left or right side everywhere; itself where these are one."""
+        if not self.is_unlike:
+            return self
+        layers = tuple(layer.model_copy(update={"side": None}) for _, layer in stack(self.layer, side))
+        return replace(self, layer=layers, ground=self.ground.alike())
+
     def layer_at(self, height: float) -> int:
-        """Number of the layer, from the top, at a height (m); above a plane between two on it."""
+        """Number of the layer, from the top, at a height (m); above a plane between two on it.
+
+        Raises ValueError where it differs at the left and right, see `beside`.
+        """
+        if self.is_unlike:
+            one, other = (
+                self.numbers_beside(side)[self.beside(side).layer_at(height)] for side in self.sides_of_ground
+            )
+            if one != other:
+                raise ValueError(f"the layers at y = {height:g} m differ at both sides")
+            return one
         near = 1e-9 * max(abs(self.box[1]), abs(self.box[3]))
         return sum(height + near < joint for joint in self.joints)
 
@@ -116,10 +149,12 @@ class DiskCase(Case):
         if not self.layer:
             return self
         only = self.layer[self.layer_at(height)].model_copy(update={"thickness": None, "bottom": None})
-        return replace(self, layer=(only,))
+        return replace(self, layer=(only,), ground=self.ground.alike())
 
     def layers_meeting(self, joints: Sequence[float]) -> tuple[Layer, ...]:
         """The layers if they meet at these heights (m), from the uppermost down, wherever the surface is."""
+        if self.is_unlike:
+            raise ValueError("the layers of one side are needed")
         ends = [*joints, None] if self.layer else []
         return tuple(
             layer.model_copy(update={"thickness": None, "bottom": end})
@@ -213,12 +248,12 @@ class DiskCase(Case):
 
         Beyond sides with a continuum there is a column if the ground has waves from below, a static stage, or a load on
         all of it. The continuum then computes only the difference from the column. Where the ground is lower beyond one
-        of the sides there is one only under waves.
+        of the sides, or its layers differ there, there is one only under waves.
         """
         if self.free_field_sides:
             return self.free_field_sides
         driven = any(self.boundary[side].waves for side in self.outside_sides)
-        if any(self.periodic) or (lowered(self.floors, self.boundary) and not driven):
+        if any(self.periodic) or ((self.is_unlike or lowered(self.floors, self.boundary)) and not driven):
             return ()
         everywhere = any(load.is_everywhere for load in self.load)
         return self.outside_sides if everywhere or driven or self.static is not None else ()
@@ -227,8 +262,10 @@ class DiskCase(Case):
     def middle(self) -> float:
         """Place x (m) of the middle of the slope between its left and right side, from which monitors are beside one.
 
-        That of the disks where the surface has one height.
+        That of the disks where the surface has one height, and the plane between layers where these differ.
         """
+        if self.ground.meet is not None:
+            return self.ground.meet
         left, _, right, _ = self.packing.box
         return 0.5 * (left + self.level["left"] + right - self.level["right"])
 

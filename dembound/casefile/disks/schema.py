@@ -27,6 +27,7 @@ from dembound.casefile.disks.monitor_rows import MonitorTable, without_rows
 from dembound.casefile.disks.static import Static, static_problems
 from dembound.casefile.disks.surface import surface_problems
 from dembound.casefile.disks.targets import law_problems, with_history
+from dembound.casefile.disks.unlike import unlike_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.casefile.model import (
     Schema,
@@ -80,6 +81,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from hole_problems(tables, "static" in given)
     yield from joint_problems(tables)
     yield from lowered_problems(tables)
+    yield from unlike_problems(tables)
     yield from law_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
@@ -95,7 +97,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["static"]:
         settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
         whole = bool(tables["packing"] and tables["ground"])  # else it is not known whether its ground has two heights
-        yield from static_problems(*settling, has_column=whole and not lowered_in(tables))
+        yield from static_problems(*settling, has_column=whole and ground.meet is None and not lowered_in(tables))
     if tables["run"]:
         yield from run_problems(tables)
     if tables["output"]:

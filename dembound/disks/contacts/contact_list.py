@@ -12,7 +12,7 @@ from dembound.disks.contacts.placing import ContactHistory, Pairs
 from dembound.disks.contacts.relisting import HISTORY, RenewedList
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.disks.contacts.skins import SKIN
-from dembound.disks.material.at_rest import StressAtRest, stressed
+from dembound.disks.material.at_rest import AtRest, stressed
 from dembound.disks.material.constants import BondFactors, brick_constants, limits_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
@@ -73,7 +73,7 @@ class ContactList(RenewedList):
         layout: Layout | None = None,
         plan: tuple[RowPlan, int] | None = None,
         layers: tuple[Limits, np.ndarray] | None = None,
-        at_rest: StressAtRest | None = None,
+        at_rest: AtRest | None = None,
         factors: BondFactors | None = None,
         dashpots: Dashpots | None = None,
         intact: np.ndarray | None = None,

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.disks.contacts.placing import NO_ARMS, NO_DASHPOTS
-from dembound.disks.material.at_rest import StressAtRest, stressed
+from dembound.disks.material.at_rest import AtRest, stressed
 from dembound.disks.material.constants import brick_constants
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels.common import CHUNKS
@@ -178,7 +178,7 @@ def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
 
 
 def plain_contacts(
-    ground: PackedMaterial, assembly: Assembly, slot: np.ndarray, at_rest: StressAtRest | None = None
+    ground: PackedMaterial, assembly: Assembly, slot: np.ndarray, at_rest: AtRest | None = None
 ) -> Contacts:
     """The contacts of the elastic law, without history, forces and rows, for its strain energy.
 

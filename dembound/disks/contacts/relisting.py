@@ -120,7 +120,7 @@ class RenewedList(PairList):
         vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
         unit = GRAIN * self.ground.brick.mean_diameter
         vectors = np.round(vectors / unit) * unit  # alike in copies of a brick, whatever other pairs there are
-        zones = self.ground.zone_of(positions[first, 1]), self.ground.zone_of(positions[second, 1])
+        zones = self.ground.zone_of(positions[first]), self.ground.zone_of(positions[second])
         both_radii, locked_in = (radii[first], radii[second]), self.locked_in
         constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
         if self._friction is not None:

@@ -19,7 +19,7 @@ from dembound.disks.material.homogenise import Network
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.sliding import strains_of, strains_with_slip, within_friction
-from dembound.packings.brick import Brick
+from dembound.disks.material.unlike import UnlikeGround
 from dembound.packings.tiling import Assembly
 from dembound.pairwise import STRAIN
 from dembound.places import ROUNDING
@@ -53,6 +53,11 @@ class StressAtRest:
         """Whether the stress is the same at all heights."""
         return not self.growth.any()
 
+    @property
+    def height(self) -> float:
+        """Height (m) of all contacts."""
+        return float(self.tops[0] - self.low)
+
     def at(self, heights: np.ndarray, x: np.ndarray | None = None) -> np.ndarray:
         """Stress (3, k) xx, yy, xy in Pa at heights (k,) m; above the surface that of no weight.
 
@@ -83,7 +88,74 @@ class StressAtRest:
         return heights, self.uniform + np.outer(vertical, [self.k0[layer], 1.0, 0.0])
 
 
-def stress_at_rest(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None = None) -> StressAtRest | None:
+@dataclass(frozen=True, eq=False)
+class UnlikeStress:
+    """The stress of undisturbed ground whose layers differ at the left and right: each side has its own.
+
+    Attributes
+    ----------
+    sides : of the left and of the right side. ground : by which places belong to a side.
+    """
+
+    sides: tuple[StressAtRest, StressAtRest]
+    ground: UnlikeGround
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether the stress is the same at all heights."""
+        return all(side.is_uniform for side in self.sides)
+
+    @property
+    def surface(self) -> np.ndarray | None:
+        """Points (2, k) m on the free surface, see `StressAtRest`."""
+        return self.sides[0].surface
+
+    @property
+    def low(self) -> float:
+        """Height (m) down to which there are contacts."""
+        return self.sides[0].low
+
+    @property
+    def height(self) -> float:
+        """Height (m) of all contacts."""
+        return max(side.height for side in self.sides)
+
+    @property
+    def slides(self) -> bool:
+        """Whether contacts slide or open under it."""
+        return any(side.slides for side in self.sides)
+
+    @property
+    def is_borne(self) -> bool:
+        """Whether the packing can bear it so."""
+        return all(side.is_borne for side in self.sides)
+
+    def at(self, heights: np.ndarray, x: np.ndarray | None = None) -> np.ndarray:
+        """Stress (3, k) xx, yy, xy in Pa at heights and places x (k,) m, which are needed."""
+        assert x is not None
+        left, right = (side.at(heights, x) for side in self.sides)
+        return np.where(self.ground.is_right(x), right, left)
+
+
+AtRest = StressAtRest | UnlikeStress
+"""The stress of undisturbed ground, by height or also by side."""
+
+
+def stress_at_rest(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None = None) -> AtRest | None:
+    """The stress with which the contacts of a case begin, of either side where its layers differ; None without forces.
+
+    Parameters as of `_level_stress`.
+    """
+    if not isinstance(ground, UnlikeGround):
+        return _level_stress(case, ground, surface)
+    left, right = (_level_stress(case.beside(side), ground.beside(side), surface) for side in ("left", "right"))
+    if left is None or right is None:
+        return None
+    slides = left.slides or right.slides
+    return UnlikeStress((replace(left, slides=slides), replace(right, slides=slides)), ground)
+
+
+def _level_stress(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | None) -> StressAtRest | None:
     """The stress with which the contacts of a case begin; None if they begin without forces.
 
     Weight counts from the height at which the packing's mass ends. surface : points (2, k) m; None: that of the box.
@@ -146,13 +218,21 @@ def pair_forces(ground: PackedMaterial) -> np.ndarray:
 
 
 def rest_forces(
-    ground: PackedMaterial, at_rest: StressAtRest, kind: np.ndarray, heights: np.ndarray, x: np.ndarray | None = None
+    ground: PackedMaterial,
+    at_rest: AtRest,
+    kind: np.ndarray,
+    heights: np.ndarray,
+    x: np.ndarray | None = None,
 ) -> np.ndarray:
     """Normal, shear and bending forces of the brick's contacts with their bonds, and shear forces of contacts, (4, k).
 
     Where some slide: of types (k,) at heights (k,) m, and places x (k,) m, in ground of one material. Within a layer
     forces change with height as the stress does, so they stay in balance and within friction.
     """
+    if isinstance(at_rest, UnlikeStress):
+        assert x is not None
+        left, right = (rest_forces(ground, side, kind, heights, x) for side in at_rest.sides)
+        return np.where(at_rest.ground.is_right(x), right, left)
     found, layer = np.empty((4, len(kind))), at_rest.layer_of(heights)
     for number in np.unique(layer).tolist():
         own = layer == number
@@ -176,23 +256,29 @@ def _sliding(ground: PackedMaterial, stress: np.ndarray) -> np.ndarray:
     return np.vstack([forces, contacts[1] * strains_of(forces, contacts + bonds)[1]])
 
 
-def levels_of(assembly: Assembly, brick: Brick, at_rest: StressAtRest | None) -> np.ndarray:
+def levels_of(assembly: Assembly, ground: PackedMaterial, at_rest: AtRest | None) -> np.ndarray:
     """A number (n,) of each disk, the same for copies of a brick under the same stress at rest: of one row of bricks.
 
-    Below a surface that is not level only bricks below equal level parts of it have the same.
+    Below a surface that is not level only bricks below equal level parts of it have the same, and where the layers of
+    both sides differ only bricks of one side.
     """
-    row = assembly.tile[:, 1].astype(np.int64)
-    if at_rest is None or at_rest.surface is None:
+    row, brick = assembly.tile[:, 1].astype(np.int64), ground.brick
+    unlike = isinstance(ground, UnlikeGround)
+    if not unlike and (at_rest is None or at_rest.surface is None):
         return row
     _, first, tile = np.unique(assembly.tile[:, 0], return_index=True, return_inverse=True)
     left = assembly.positions[first, 0] - brick.positions[assembly.brick_particle[first], 0]
+    if isinstance(ground, UnlikeGround):
+        row = row * (len(left) + 2) + ground.side_of_bricks(left)[tile]
+    if at_rest is None or at_rest.surface is None:
+        return row
     reach, points = float(np.abs(brick.vectors[:, 0]).max()), at_rest.surface
     low, high = left - reach, left + float(brick.size[0]) + reach
     ends = np.interp(np.stack([low, high]), *points)
     inside = (points[0] > low[:, None]) & (points[0] < high[:, None])
     least = np.minimum(ends.min(axis=0), np.where(inside, points[1], np.inf).min(axis=1))
     most = np.maximum(ends.max(axis=0), np.where(inside, points[1], -np.inf).max(axis=1))
-    is_level = most - least <= ROUNDING * (at_rest.tops[0] - at_rest.low)
+    is_level = most - least <= ROUNDING * at_rest.height
     heights, kind = np.unique(np.round(least[is_level] - at_rest.low, 6), return_inverse=True)
     number = len(heights) + np.arange(len(left))
     number[is_level] = kind
@@ -201,7 +287,7 @@ def levels_of(assembly: Assembly, brick: Brick, at_rest: StressAtRest | None) ->
 
 
 def stressed(
-    ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: StressAtRest | None
+    ground: PackedMaterial, constants: np.ndarray, assembly: Assembly, at_rest: AtRest | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Constants of contacts that begin under a stress at rest, the row of each contact (b,), and the slip of each row.
 
@@ -214,7 +300,7 @@ def stressed(
     across, middle = (brick.positions[brick.pairs[:, 0]] + 0.5 * brick.vectors).T
     began = slice(ground.law.width, ground.law.width + STRAIN)
     kind, types = assembly.contact_type.astype(np.int64), 2 * len(middle)
-    _, first, row = np.unique(levels_of(assembly, brick, at_rest), return_index=True, return_inverse=True)
+    _, first, row = np.unique(levels_of(assembly, ground, at_rest), return_index=True, return_inverse=True)
     begin = assembly.positions[first] - brick.positions[assembly.brick_particle[first]]
     row = np.zeros(len(kind), np.int64) if at_rest.is_uniform else row.reshape(-1)[assembly.pairs[:, 0]]
     used, variant = np.unique(row * len(ground.pairings) + kind // types, return_inverse=True)

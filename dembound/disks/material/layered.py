@@ -77,7 +77,7 @@ class LayeredGround(PackedMaterial):
     layers: tuple[Zone, ...] = ()
     joints: tuple[Joint, ...] = ()
 
-    def at(self, height: float) -> PackedMaterial:
+    def at(self, height: float, x: float | None = None) -> PackedMaterial:
         """The material of the layer at a height (m), without corrections; above it on a joint."""
         return self.layers[int(_number(self.layers, self._rounding, np.array(height)))].material
 
@@ -94,17 +94,17 @@ class LayeredGround(PackedMaterial):
         )
         return super()._with(zones=zones, layers=layers, **damping)
 
-    def zone_of(self, heights: np.ndarray) -> np.ndarray:
-        """Number of the zone, from the bottom, of disks at heights (n,) m."""
-        return _number(self.zones, self._rounding, heights)
+    def zone_of(self, places: np.ndarray) -> np.ndarray:
+        """Number of the zone, from the bottom, of disks at places (n, 2) m."""
+        return _number(self.zones, self._rounding, places[:, 1])
 
-    def layer_of(self, heights: np.ndarray) -> np.ndarray:
-        """Number of the layer, from the top, of disks at heights (n,) m."""
-        return np.array([zone.layer for zone in self.zones])[self.zone_of(heights)]
+    def layer_of(self, places: np.ndarray) -> np.ndarray:
+        """Number of the layer, from the top, of disks at places (n, 2) m."""
+        return np.array([zone.layer for zone in self.zones])[self.zone_of(places)]
 
     def disk_masses(self, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
         """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""
-        zone, disk = self.zone_of(assembly.positions[:, 1]), assembly.brick_particle
+        zone, disk = self.zone_of(assembly.positions), assembly.brick_particle
         mass, inertia = (
             np.stack([getattr(each.material, name) for each in self.zones]) for name in ("mass", "inertia")
         )
@@ -117,10 +117,9 @@ class LayeredGround(PackedMaterial):
         return tuple((a, b) for a in range(last + 1) for b in (a - 1, a, a + 1) if 0 <= b <= last)
 
     def pairing_of(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        """Number (b,) in `pairings` of contacts between disks at heights first and second (b,) m."""
+        """Number (b,) in `pairings` of contacts between disks at places first and second (b, 2) m."""
         a, b = self.zone_of(first), self.zone_of(second)
-        if (np.abs(a - b) > 1).any():
-            raise CaseError(["layer: a layer is too thin for this packing: contacts reach across it"])
+        require_thick((np.abs(a - b) <= 1).all())
         return 3 * a + b - a
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:
@@ -167,6 +166,12 @@ class LayeredGround(PackedMaterial):
     @cached_property
     def _rounding(self) -> float:
         return ON_JOINT * self.brick.mean_diameter
+
+
+def require_thick(joins_neighbours: bool | np.bool_) -> None:
+    """Raise CaseError unless contacts join disks of neighbouring zones only."""
+    if not joins_neighbours:
+        raise CaseError(["layer: a layer is too thin for this packing: contacts reach across it"])
 
 
 def materials_in(ground: PackedMaterial) -> list[PackedMaterial]:
@@ -273,9 +278,8 @@ def _pulled(ground: LayeredGround, strip: Assembly, held: np.ndarray, pulled: np
 
     from dembound.disks.material.homogenise import Network
 
-    count, up = len(strip.radii), strip.positions[:, 1]
-    first, second = up[strip.pairs].T
-    kinds = ground.pairing_of(first, second)
+    count, ends = len(strip.radii), strip.positions[strip.pairs]
+    kinds = ground.pairing_of(ends[:, 0], ends[:, 1])
     each = [ground.stiffness_of(pairing) for pairing in ground.pairings]
     columns = {
         field.name: np.stack([getattr(one, field.name) for one in each])[kinds, strip.contact_type]

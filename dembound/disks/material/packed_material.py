@@ -186,22 +186,26 @@ class PackedMaterial:
         """Moments of inertia of the disks (n,) kg·m², mR²/2."""
         return 0.5 * self.mass * self.brick.radii**2
 
-    def at(self, height: float) -> PackedMaterial:
-        """The material at a height (m): the same everywhere, except in a layered ground."""
+    def at(self, height: float, x: float | None = None) -> PackedMaterial:
+        """The material at a height and a place x (m): the same everywhere, except in a layered ground."""
         return self
 
-    def zone_of(self, heights: np.ndarray) -> np.ndarray:
-        """Number of the zone, from the bottom, of disks at heights (n,) m: one, except in a layered ground."""
-        return np.zeros(len(heights), dtype=np.int64)
+    def beside(self, side: str) -> PackedMaterial:
+        """The ground of the left or right side, as if it were everywhere: the same, except in unlike ground."""
+        return self
+
+    def zone_of(self, places: np.ndarray) -> np.ndarray:
+        """Number of the zone, from the bottom, of disks at places (n, 2) m: one, except in a layered ground."""
+        return np.zeros(len(places), dtype=np.int64)
 
     @property
     def materials(self) -> tuple[PackedMaterial, ...]:
         """The materials of its layers, from the surface down, without corrections; of uniform ground itself."""
         return (self,)
 
-    def layer_of(self, heights: np.ndarray) -> np.ndarray:
-        """Number of the layer, from the top, of disks at heights (n,) m."""
-        return np.zeros(len(heights), dtype=np.int64)
+    def layer_of(self, places: np.ndarray) -> np.ndarray:
+        """Number of the layer, from the top, of disks at places (n, 2) m."""
+        return np.zeros(len(places), dtype=np.int64)
 
     def disk_masses(self, assembly: Assembly) -> tuple[np.ndarray, np.ndarray]:
         """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""
@@ -218,7 +222,7 @@ class PackedMaterial:
         return ((0, 0),)
 
     def pairing_of(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        """Number (b,) in `pairings` of contacts between disks at heights first and second (b,) m."""
+        """Number (b,) in `pairings` of contacts between disks at places first and second (b, 2) m."""
         return np.zeros(len(first), dtype=np.int64)
 
     def stiffness_of(self, pairing: tuple[int, int]) -> Stiffness:

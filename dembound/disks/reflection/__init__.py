@@ -201,6 +201,7 @@ def compare_types(
 
 def layers_beside(case: DiskCase, side: str) -> list[str]:
     """Names of the layers along a left or right side, from the surface down; none if there are fewer than two."""
+    case = case.beside(side)
     if len(case.layer) < 2 or normal_axis(side) == 1:
         return []
     _, low, _, high = case.packing.box
@@ -212,15 +213,20 @@ def _in_layer(case: DiskCase, side: str, layer: str | None) -> DiskCase:
 
     Raises CaseError unless a side along several layers has the name of one.
     """
-    if len(case.layer) < 2:
+    whole, case = case, case.beside("right" if side == "right" else "left")
+    if len(whole.layer) < 2:
         return case
     if (names := layers_beside(case, side)) and layer not in names:
         raise CaseError(
             [f"boundary.{side}: meets several layers, and reflects by layer; name one of {', '.join(names)}"]
         )
-    number = case.layer_names.index(layer) if layer in names else case.layer_at(case.box[3 if side == "top" else 1])
+    number = (
+        case.layer_names.index(layer)
+        if layer and layer in names
+        else case.layer_at(case.box[3 if side == "top" else 1])
+    )
     alone = case.uniform_at([case.box[3], *case.joints][number] - case.packing.radius)
-    return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(case))[0]}))
+    return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(whole))[0]}))
 
 
 def _of_continuum(

@@ -271,7 +271,9 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.intact:
         keys["intact"] = case.intact
     if case.layer:
-        keys["layer"] = case.layer
+        keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]
+    if case.is_unlike:
+        keys["sides_of_layers"] = [case.ground.meet, *(layer.side for layer in case.layer)]
     if scene.ground.is_damped:
         each = scene.ground.mechanisms_by_layer
         keys["unrelaxed"] = [one and one.unrelaxed * (one.relaxed if scene.ground.relaxes else 1.0) for one in each]

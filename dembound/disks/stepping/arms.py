@@ -35,8 +35,7 @@ def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
     shape = contacts.own_types, decay.shape[1]
     found = Arms(np.ones(shape), np.zeros(shape), np.zeros((CHUNKS, LOST)))
     kind, at = np.unique(contacts.kind, return_index=True)
-    height = contacts.assembly.positions[:, 1]
-    first, second = height[contacts.assembly.pairs[at]].T
+    first, second = contacts.assembly.positions[contacts.assembly.pairs[at]].swapaxes(0, 1)
     other = shares_of_others(scene.ground, first, second)
     one, two = (
         (share[:, None] * weight[layer], np.log(decay[layer]))

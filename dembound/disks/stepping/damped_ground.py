@@ -131,7 +131,7 @@ class DampedTies(Tie):
 def layers_of(scene: DiskBody, nodes: np.ndarray) -> tuple[list[Attenuation | None], np.ndarray]:
     """The mechanisms of every layer of the ground, None for undamped ones, and the layer (k,) of some nodes (k,)."""
     ground = scene.ground
-    return list(ground.mechanisms_by_layer), ground.layer_of(scene.positions[nodes, 1]).astype(np.uint8)
+    return list(ground.mechanisms_by_layer), ground.layer_of(scene.positions[nodes]).astype(np.uint8)
 
 
 def unrelaxed(scene: DiskBody) -> np.ndarray:
@@ -211,7 +211,7 @@ def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
     factors = np.zeros((count, 2, 2 * each.shape[2]))
     own, other = layer[owner[first]], layer[neighbour[first]]
     factors[:, 0] = np.concatenate([each[own, 0], each[other, 0]], axis=1)
-    share = shares_of_others(scene.ground, scene.positions[owner[first], 1], scene.positions[neighbour[first], 1])
+    share = shares_of_others(scene.ground, scene.positions[owner[first]], scene.positions[neighbour[first]])
     factors[:, 1] = share[:, None] * np.concatenate([-each[own, 1], each[other, 1]], axis=1)
     constants, row_of = elastic_constants(scene.ground) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
     slot = scene.layout.slot
@@ -245,9 +245,9 @@ def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np
     return target, owner, neighbour, end
 
 
-def shares_of_others(ground: PackedMaterial, heights: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Share k₁/(k₁ + k₂) of the other layer's damping in contacts of disks at heights (k,) with those at others."""
-    number, shares = ground.pairing_of(heights, others), np.zeros(len(heights))
+def shares_of_others(ground: PackedMaterial, places: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Share k₁/(k₁ + k₂) of the other layer's damping in contacts of disks at places (k, 2) m with those at others."""
+    number, shares = ground.pairing_of(places, others), np.zeros(len(places))
     for each in np.unique(number).tolist():
         one, other = (ground.stiffness_of((zone, zone)) for zone in ground.pairings[each])
         own, beyond = (float((each.normal + each.shear).sum()) for each in (one, other))

@@ -9,7 +9,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.layout import Rows, elastic_constants, with_special
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.contacts.placing import NO_DASHPOTS
-from dembound.disks.material.at_rest import StressAtRest
+from dembound.disks.material.at_rest import AtRest
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.stepping.arms import of_all_types
 from dembound.disks.stepping.damped_ground import DiskMemories
@@ -69,7 +69,7 @@ class DiskPart(Part):
         rows: Rows,
         layout: Layout,
         contacts: ContactList | None,
-        at_rest: StressAtRest | None = None,
+        at_rest: AtRest | None = None,
         memories: DiskMemories | None = None,
         arms: Arms | None = None,
     ) -> None:

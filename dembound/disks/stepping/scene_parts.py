@@ -96,7 +96,7 @@ def _layers(scene: DiskBody, part: Assembly) -> tuple[Limits, np.ndarray] | None
     ground, materials = scene.ground, scene.case.materials
     if not isinstance(ground, LayeredGround):
         return None
-    friction = np.array([each.fric for each in materials])[ground.layer_of(part.positions[:, 1])]
+    friction = np.array([each.fric for each in materials])[ground.layer_of(part.positions)]
     return ground_limits(ground, materials), friction
 
 

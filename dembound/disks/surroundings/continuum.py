@@ -13,13 +13,16 @@ from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks.layer import CONTINUUM
 from dembound.continuum.edges import free_edges
 from dembound.continuum.interpolation import located
-from dembound.continuum.medium import Ground, Layered
+from dembound.continuum.medium import Ground, Layered, Unlike, one_side
 from dembound.continuum.mesh import Mesh
 from dembound.continuum.part import GridBody
+from dembound.damping import Attenuation
 from dembound.disks.material.free_surface import mass_of
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.surroundings.cut_bonds import CutBonds
-from dembound.disks.surroundings.mesh import Level, Outline, box_of, mass_extent, medium_of, on_top
+from dembound.disks.surroundings.media import medium_of
+from dembound.disks.surroundings.mesh import Level, Outline, box_of, mass_extent, on_top
 from dembound.disks.surroundings.settings import Settings
 from dembound.disks.surroundings.wall import Wall, lag_of
 from dembound.errors import CaseError
@@ -269,7 +272,7 @@ def surroundings_of(
     grid = GridBody(
         mesh=mesh,
         medium=_on_edges(medium_of(ground), mesh),
-        mechanisms=ground.mechanisms_by_layer[::-1],
+        mechanisms=mechanisms_upwards(ground),
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
         first_slot=-(-layout.count // LANES) * LANES,
@@ -279,9 +282,11 @@ def surroundings_of(
     grid = replace(grid, added_mass=mass_of(massless, mesh, density))
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
-    surface_mass = rim.massless.get("top", 0.0) * ground.at(rim.surface or rim.box[3]).density
+    above = [ground.beside(side).at(rim.surface or rim.box[3]).density for side in ("left", "right")]
+    surface_mass = rim.massless.get("top", 0.0) * (0.5 * sum(above))
     level_masses = {
-        side: (level.mass_end - level.surface) * ground.at(level.surface).density for side, level in rim.levels.items()
+        side: (level.mass_end - level.surface) * ground.beside(side).at(level.surface).density
+        for side, level in rim.levels.items()
     }
     found = Surroundings(
         sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twins, surface_mass,
@@ -293,8 +298,17 @@ def surroundings_of(
     return found
 
 
+def mechanisms_upwards(ground: PackedMaterial) -> tuple[Attenuation | None, ...]:
+    """The mechanisms of the layers from the bottom up, in unlike ground those of the left side and then the right."""
+    each = ground.sides if isinstance(ground, UnlikeGround) else (ground,)
+    return tuple(one for side in each for one in side.mechanisms_by_layer[::-1])
+
+
 def _on_edges(ground: Ground, mesh: Mesh) -> Ground:
     """The ground with its joints on the edges of rows nearest to them: one beside the edge of the box lies on it."""
+    if isinstance(ground, Unlike):
+        left, right = (one_side(_on_edges(side, mesh)) for side in (ground.left, ground.right))
+        return Unlike(left, right)
     if not isinstance(ground, Layered):
         return ground
     edges = mesh.origin[1] + mesh.axes[1].edges

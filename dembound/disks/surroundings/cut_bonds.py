@@ -80,7 +80,7 @@ class CutBonds:
     @classmethod
     def _of_layers(cls, ground: LayeredGround, cut: CutContacts, positions: np.ndarray) -> CutBonds:
         """The bonds of a layered ground: half a bond has the springs of the zone of its disk."""
-        zone, order, parts = ground.zone_of(positions[cut.node, 1]), [], []
+        zone, order, parts = ground.zone_of(positions[cut.node]), [], []
         for number in np.unique(zone).tolist():
             order.append(np.flatnonzero(zone == number))
             parts.append(vars(cls.of(ground.zones[number].material, cut.only(zone == number), positions)))

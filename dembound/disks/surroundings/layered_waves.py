@@ -32,7 +32,7 @@ from dembound.disks.surroundings.ground_waves import (
     must_not_be_there,
     reference_point,
 )
-from dembound.disks.surroundings.mesh import homogeneous
+from dembound.disks.surroundings.media import homogeneous
 from dembound.disks.surroundings.oblique_layers import ObliqueLayers, oblique_in_layers
 from dembound.errors import CaseError
 from dembound.exact.column import Column, ColumnMotion, Layer, Quantity

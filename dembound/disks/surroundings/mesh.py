@@ -14,13 +14,13 @@ from dembound.boundaries.edge import SIDES, is_far, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.axis import WHOLE, Around, divided
 from dembound.continuum.layer import LONG_WAVES
-from dembound.continuum.medium import Ground, Layered, Medium
 from dembound.continuum.mesh import Mesh
 from dembound.disks.material.free_surface import inset
-from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.edges import ON_IT
-from dembound.disks.surroundings.settings import Settings, least_element, mesh_of, settings_of
+from dembound.disks.surroundings.elements import mesh_of
+from dembound.disks.surroundings.media import medium_of
+from dembound.disks.surroundings.settings import Settings, least_element, settings_of
 from dembound.errors import CaseError
 from dembound.holes.hole import Floor
 from dembound.packings.tiling import Assembly
@@ -138,16 +138,23 @@ class Rim(NamedTuple):
         for side in SIDES:
             if case.side(side).is_free and _is_beside(side, sides):
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
-                skins[side] = ground.at(box[3 if side == "top" else 1]).skin(side)  # left and right: of what is below
+                height = box[3 if side == "top" else 1]  # left and right: of what is below
+                skins[side] = _skin(ground, side, height, floors)
                 box[number] = inset(rim, skins)[number]
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
         if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
             _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
-            skins["top"] = ground.at(case.box[3]).skin("top")
+            skins["top"] = _skin(ground, "top", case.box[3], floors)
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
-        levels = {side: Level.of(ground, body, floor, side) for side, floor in floors.items() if side in sides}
+        levels = {
+            side: Level.of(ground.beside(side), body, floor, side) for side, floor in floors.items() if side in sides
+        }
+        heights = [level.height for level in levels.values()]
+        if len(heights) == 2 and np.ptp(heights) <= ON_IT * ground.brick.mean_diameter:  # skins of unlike layers differ
+            mean = 0.5 * sum(level.surface for level in levels.values())
+            levels = {side: level._replace(surface=mean) for side, level in levels.items()}
         left, bottom, right, top = box
         return cls((left, bottom, right, top), surface, skins, massless, levels)
 
@@ -237,6 +244,15 @@ class Outline(NamedTuple):
         return cls(("bottom",), size, rim, own)
 
 
+def _skin(ground: PackedMaterial, side: str, height: float, floors: Mapping[str, Floor]) -> float:
+    """Depth (m) of the skin at a side at a height, m.
+
+    Where layers differ, those of the side without a floor, or the mean of both: the edge of the continuum is level.
+    """
+    each = [beside for beside in ("left", "right") if beside not in floors] or ["left", "right"]
+    return sum(ground.beside(beside).at(height).skin(side) for beside in each) / len(each)
+
+
 def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
     """Values (n,) on the top of a mesh for all its nodes; beyond sides in `at_levels` their own values."""
     left, right, *_ = mesh.sides
@@ -313,20 +329,6 @@ def _refuse_low(key: str, rim: Rim, least: float) -> None:
                     f"{'as high, or ' if low in surfaces else ''}{least_is}"
                 ]
             )
-
-
-def medium_of(ground: PackedMaterial) -> Ground:
-    """The continuum that a packing is equivalent to, with all six constants, by layer."""
-    if isinstance(ground, LayeredGround):
-        media = tuple(homogeneous(each.material) for each in ground.layers)
-        return Layered(media, tuple(each.low for each in ground.layers[1:]))
-    return homogeneous(ground)
-
-
-def homogeneous(ground: PackedMaterial) -> Medium:
-    """The continuum that one material is equivalent to."""
-    c = ground.material_tensor
-    return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
 
 
 def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:

@@ -22,7 +22,7 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, is_far, normal_axis
 from dembound.disks.matching import Held
 from dembound.disks.scene import DiskScene
-from dembound.disks.sides import ground_at, layers_beside
+from dembound.disks.sides import ground_at, ground_beside, layers_beside
 from dembound.disks.surroundings.frequencies import mean_frequency
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ class Grid:
     ends: Mapping[str, End]
 
     @classmethod
-    def of(cls, scene: DiskScene, axis: int) -> Grid:
-        """The coarse grid of a scene for a wave along an axis."""
+    def of(cls, scene: DiskScene, axis: int, beside: str = "left") -> Grid:
+        """The coarse grid of a scene for a wave along an axis; beside : the side whose layers it has if unlike."""
         order, gradients = ([0, 1], [0, 1, 2, 3]) if axis == 1 else ([1, 0], [1, 0, 3, 2])
-        ground, box = scene.ground, np.array(scene.case.packing.box)
+        ground, box = ground_beside(scene, beside), np.array(scene.case.packing.box)
         size = (box[2:] - box[:2])[order]
         frequency, speeds = mean_frequency(scene.case), np.array(ground.wave_speeds(axis))
         known = math.isfinite(frequency) and (speeds > 0.0).any()
@@ -149,7 +149,8 @@ def _end(scene: DiskScene, side: str, order: list[int], free: np.ndarray, height
         held = Held.of(scene, side)
         return End(held.damping[order], held.stiffness[order], moves)
     by_layer = [Held.of(scene, side, part) for part in range(len(layers))]
-    beside = np.searchsorted(-np.array(layers), -scene.ground.layer_of(heights)).clip(max=len(layers) - 1)
+    layer = ground_beside(scene, side).layer_of(np.column_stack([np.zeros_like(heights), heights]))
+    beside = np.searchsorted(-np.array(layers), -layer).clip(max=len(layers) - 1)
     damping, stiffness = (np.stack(values)[beside][:, order] for values in zip(*by_layer, strict=True))
     return End(damping, stiffness, moves)
 
@@ -304,8 +305,9 @@ def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
         if scene.ground.is_layered and normal_axis(driven) == 0:  # along layers no plane wave runs
             continue
         sides = [side for side in SIDES if normal_axis(side) != normal_axis(driven) and _takes(scene, side)]
-        if sides and (shares := _shares(scene, driven, waves, sides)):
-            yield Taken(driven, list(waves.values()), sides, shares)
+        for alike in [[side] for side in sides] if case.is_unlike else [sides]:
+            if alike and (shares := _shares(scene, driven, waves, alike)):
+                yield Taken(driven, list(waves.values()), alike, shares)
 
 
 def _takes(scene: DiskScene, side: str) -> bool:
@@ -323,7 +325,7 @@ def _takes(scene: DiskScene, side: str) -> bool:
 
 def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:
     """The shares at the monitors that the wave reaches, without monitors in the middle of the body."""
-    case, grid = scene.case, Grid.of(scene, normal_axis(driven))
+    case, grid = scene.case, Grid.of(scene, normal_axis(driven), sides[0])
     left, bottom, right, top = case.packing.box
     places = {f"monitor {monitor.name}": np.array(scene.monitored[monitor.name]) for monitor in case.monitor}
     places = places or {"the middle": 0.5 * np.array([left + right, bottom + top])}

@@ -159,12 +159,12 @@ def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -
     beyond = sizing.slowest(medium) / length
     error = max(sizing.element_error(signals, medium, order, side), near_error(scene, outside))
     each = [order * sizing.slowest(own) / (largest * beyond) for own, largest in elements_by_layer(outside)[::-1]]
-    nodes = ", ".join(f"{count:.3g}" for count in each)
-    layers = "" if len(each) == 1 else " of each layer from above, the shortest"
+    at = " at the right and then the left" if scene.case.is_unlike else ""
+    layers = "" if len(each) == 1 else f" of each layer from above{at}, the shortest"
     return (
-        f"{nodes} nodes in the shortest wavelength{layers}, {length:.3g} m ({100.0 * sizing.SHARE:g} % of "
-        f"the energy is above {beyond:.3g} Hz); error of velocities at most {percent(min(error, 1.0))}"
-        f"{_as_small(scene, error)}"
+        f"{', '.join(f'{count:.3g}' for count in each)} nodes in the shortest wavelength{layers}, {length:.3g} m "
+        f"({100.0 * sizing.SHARE:g} % of the energy is above {beyond:.3g} Hz); error of velocities at most "
+        f"{percent(min(error, 1.0))}{_as_small(scene, error)}"
     )
 
 
@@ -307,9 +307,10 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
 
 def _thin_layers(scene: DiskScene, outside: Surroundings, keys: OutsideTable) -> Iterator[str]:
     """Warnings about layers in which a low row of elements shortens the time step, see `LOW`."""
-    body, diameter = outside.body, scene.ground.brick.mean_diameter
+    body, diameter, case = outside.body, scene.ground.brick.mean_diameter, scene.case
+    names = [name for side in case.sides_of_ground for name in case.beside(side).layer_names[::-1]]
     heights = body.mesh.element_sizes[:, 1]
-    for number, (name, medium) in enumerate(zip(scene.case.layer_names[::-1], body.ground.media, strict=False)):
+    for number, (name, medium) in enumerate(zip(names, body.ground.media, strict=False)):
         height = float(heights[body.layer == number].min(initial=math.inf))
         slower = sizing.fastest(body.medium) / medium.normal_speed(1)
         part = float(np.interp(slower * height / diameter, *LOW))

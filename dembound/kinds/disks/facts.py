@@ -14,7 +14,7 @@ from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.disks.static import can_break, keeps_forces
 from dembound.casefile.messages import counted
 from dembound.disks.contacts.layout import fill
-from dembound.disks.material.at_rest import StressAtRest
+from dembound.disks.material.at_rest import AtRest
 from dembound.disks.scene import DiskScene
 from dembound.disks.supports import forces_of
 from dembound.disks.surroundings.frequencies import mean_frequency
@@ -122,7 +122,7 @@ def _static_facts(scene: DiskScene) -> Entries:
     at_rest = scene.at_rest
     if at_rest is not None:
         acting.append("the stress at rest")
-        yield "stress at rest", "; ".join(_at_heights(at_rest, (scene.low[1] + scene.size[1], scene.low[1])))
+        yield "stress at rest", "; ".join(_at_heights(scene, at_rest))
     elif static.stress is not None:
         texts, unit = in_one_unit(static.stress, "Pa")
         acting.append(f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit}")
@@ -135,18 +135,22 @@ def _static_facts(scene: DiskScene) -> Entries:
     yield "static sides", sides
 
 
-def _at_heights(at_rest: StressAtRest, heights: tuple[float, float]) -> Iterator[str]:
-    """The stress at rest at the top and bottom (m), in words; once where it is the same everywhere.
+def _at_heights(scene: DiskScene, at_rest: AtRest) -> Iterator[str]:
+    """The stress at rest at the top and bottom, in words; once where it is the same everywhere.
 
-    Below a surface that is not level: at the bottom, once if it is as high at both ends.
+    Below a surface that is not level, or in layers that differ: at the bottom, once if both ends are alike.
     """
-    places: list[tuple[float, np.ndarray | None, str]] = [(height, None, "") for height in heights]
+    (left, bottom), (wide, high) = scene.low.tolist(), scene.size.tolist()
+    unlike, ends = scene.case.is_unlike, [(left, bottom + high), (left + wide, bottom + high)]
     if at_rest.surface is not None:
-        ends = zip(at_rest.surface[:, [0, -1]].T.tolist(), (" below the left end", " below the right end"), strict=True)
-        by_top = {top: (heights[1], np.array([x]), of) for (x, top), of in ends}
+        ends = at_rest.surface[:, [0, -1]].T.tolist()
+    places: list[tuple[float, float, str]] = [(height, left, "") for height in (bottom + high, bottom)]
+    if at_rest.surface is not None or unlike:
+        named = zip(ends, (" below the left end", " below the right end"), strict=True)
+        by_top = {of if unlike else top: (bottom, x, of) for (x, top), of in named}
         places = [(y, x, of if len(by_top) > 1 else "") for y, x, of in by_top.values()]
     for height, x, of in places:
-        texts, unit = in_one_unit(at_rest.at(np.array([height]), x)[:, 0].tolist(), "Pa")
+        texts, unit = in_one_unit(at_rest.at(np.array([height]), np.array([x]))[:, 0].tolist(), "Pa")
         where = "everywhere" if at_rest.is_uniform else f"at y = {height:.4g} m{of}"
         yield f"σ_xx, σ_yy, σ_xy = {', '.join(texts)} {unit} {where}"
         if at_rest.is_uniform:

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from dembound.casefile.disks import DiskCase
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping import Mechanisms, Rayleigh
 from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.scene import DiskScene
 from dembound.disks.stability import reserve, viscous_share
 from dembound.kinds.disks.micro_macro import Own, brick_quantities, materials_of
@@ -54,7 +56,8 @@ def speeds_along(ground: PackedMaterial, axis: int) -> list[float | None]:
 def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
     """The layers from the surface down: heights (m), density, moduli (Pa), and speeds along y (m/s, null where held).
 
-    The lowest ends with the ground's box, or where it begins if that is below.
+    The lowest ends with the ground's box, or where it begins if that is below. Where they differ at the left and right:
+    those of the left side and then those of the right one, with the `side`.
 
     `joint` : of the joint below, null without one: the effective heights of mass, and of stiffness for P and S waves,
     before they are corrected, in m above the plane; null where the layers do not differ.
@@ -62,7 +65,18 @@ def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
     ground, case = scene.ground, scene.case
     if not isinstance(ground, LayeredGround):
         return []
-    heights = (case.box[3], *case.joints, min(case.box[1], case.joints[-1]))
+    if not isinstance(ground, UnlikeGround):
+        return _layers_of(case, ground)
+    return [
+        {"name": each["name"], "side": side} | each
+        for side in ("left", "right")
+        for each in _layers_of(case.beside(side), ground.beside(side))
+    ]
+
+
+def _layers_of(case: DiskCase, ground: LayeredGround) -> list[dict[str, Any]]:
+    """The layers of a case that are the same at both sides, see `describe_layers`."""
+    heights = (case.box[3], *case.joints, min([case.box[1], *case.joints[-1:]]))
     joints = [*reversed(ground.joints), None]
     found = []
     for number, (name, material, joint) in enumerate(zip(case.layer_names, ground.materials, joints, strict=True)):
@@ -136,16 +150,17 @@ def _layer_facts(scene: DiskScene, layers: Sequence[Mapping[str, Any]]) -> Entri
     highest = max((wave.highest_frequency() for name, wave in scene.case.wave.items() if name in used), default=0.0)
     diameter, bottom = scene.ground.brick.mean_diameter, scene.case.side("bottom")
     goes_on = bottom.is_outside or (bool(bottom.factors) and getattr(bottom, "rock", None) is None)
-    for layer, below in zip(layers, [*layers[1:], None], strict=True):
+    for layer, after in zip(layers, [*layers[1:], None], strict=True):
+        at, below = f", {layer['side']}" if "side" in layer else "", after if layer["joint"] else None
         speeds = {"c_p": layer["p_wave_speed"], "c_s": layer["s_wave_speed"]}
         runs = [speed for speed in speeds.values() if speed is not None]
         parts = [_heights_of(layer, below is None and goes_on), with_unit(layer["density"], "kg/m³")]
         parts += [f"{sign} = {with_unit(speed, 'm/s')}" for sign, speed in speeds.items() if speed is not None]
         if runs and 0.0 < highest < math.inf:
             parts.append(f"{particles_per(min(runs) / highest / diameter)} wavelength at {with_unit(highest, 'Hz')}")
-        yield f"layer {layer['name']}", ", ".join(parts)
+        yield f"layer {layer['name']}{at}", ", ".join(parts)
         if below is not None:
-            yield f"joint {layer['name']}/{below['name']}", _joint_fact(layer)
+            yield f"joint {layer['name']}/{below['name']}{at}", _joint_fact(layer)
 
 
 def _heights_of(layer: Mapping[str, Any], goes_on: bool) -> str:

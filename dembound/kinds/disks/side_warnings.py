@@ -173,7 +173,8 @@ def _parts_in_words(scene: DiskScene, parts: Collection[tuple[str, int]]) -> str
     for side in dict.fromkeys(side for side, _ in parts):
         layers = layers_beside(scene, side)
         meant = [layers[part] for each, part in parts if each == side]
-        names = [scene.case.layer_names[number] for number in meant] if len(meant) < len(layers) else []
+        own = scene.case.beside("right" if side == "right" else "left").layer_names
+        names = [own[number] for number in meant] if len(meant) < len(layers) else []
         found.append(f"boundary.{side}" + (f" (beside {' and '.join(names)})" if names else ""))
     return " and ".join(found)
 

@@ -1,4 +1,4 @@
-"""What is said of ground of two heights: its columns, what free-field sides send back, and its stress at rest."""
+"""What is said of ground of two heights or unlike layers: columns, what free fields send back, and stress at rest."""
 
 import math
 from collections.abc import Iterator
@@ -37,11 +37,14 @@ def slope_facts(scene: DiskScene) -> Entries:
     """Facts about ground that is not as high at both sides."""
     case = scene.case
     heights = surface_heights(case)
+    if case.is_unlike:
+        yield "layers", f"those of the left side and of the right one meet at x = {case.ground.meet:.6g} m"
     if len(scene.seams) > 1:
+        border = "where the layers meet" if case.is_unlike else "the middle of the slope"
         yield (
             "free field",
             f"a column for each side, up to y = {heights['left']:.4g} m at the left and {heights['right']:.4g} m at "
-            f"the right; that of monitors left of x = {case.middle:.4g} m, the middle of the slope, is the left one",
+            f"the right; that of monitors left of x = {case.middle:.4g} m, {border}, is the left one",
         )
     static, high = case.static, abs(heights["left"] - heights["right"])
     if static is None or high == 0.0 or "bottom" not in static.boundary:
@@ -72,11 +75,16 @@ def slope_warnings(scene: DiskScene) -> Iterator[str]:
     case = scene.case
     if len(scene.seams) < 2 or not case.free_field_sides:
         return
+    sides, heights = " and ".join(f"boundary.{side}" for side in case.free_field_sides), surface_heights(case)
+    if case.is_unlike and heights["left"] == heights["right"]:
+        yield (
+            f"{sides}: free-field sides send back what is scattered where the layers meet, how much is not predicted; "
+            'take "outside" there and at bottom'
+        )
+        return
     found = sent_back_beside_slope(case, slowest_speed(scene.ground))
     if not math.isfinite(found):
         return
-    sides = " and ".join(f"boundary.{side}" for side in case.free_field_sides)
-    heights = surface_heights(case)
     apart = min(case.level[side] for side in case.free_field_sides) / abs(heights["left"] - heights["right"])
     yield (
         f"{sides}: beside ground of two heights free-field sides send back what the slope scatters: about "

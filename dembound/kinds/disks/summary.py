@@ -220,7 +220,7 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
     }
     if len(parts) == 1 or table.is_outside:
         return described | table.describe(edge, parts[0][1])
-    names = (scene.case.layer_names[number] for number in layers_beside(scene, side))
+    names = (scene.case.beside(side).layer_names[number] for number in layers_beside(scene, side))
     each = [{"layer": name} | table.describe(*part) for name, part in zip(names, parts, strict=True)]
     return described | table.describe(*parts[0]) | {"layers": each}
 

@@ -148,14 +148,18 @@ def _never_arrives(scene: DiskScene) -> Iterator[str]:
 def _travel_time(scene: DiskScene) -> float:
     """Time (s) the fastest wave takes along the scene's longer side; nan if no motion along it is possible."""
     axis = int(np.argmax(scene.size))
-    fastest = [
-        max((speed for speed in layer.wave_speeds(axis) if not math.isnan(speed)), default=math.nan)
-        for layer in scene.ground.materials
-    ]
-    if axis == 0 or len(fastest) == 1:
-        return float(scene.size[axis]) / max(fastest)
-    _, bottom, _, top = scene.case.box
-    return float(sum(-np.diff([top, *scene.case.joints, bottom]) / fastest))
+    times = []
+    for side in ("left", "right"):
+        fastest = [
+            max((speed for speed in layer.wave_speeds(axis) if not math.isnan(speed)), default=math.nan)
+            for layer in scene.ground.beside(side).materials
+        ]
+        if axis == 0 or len(fastest) == 1:
+            times.append(float(scene.size[axis]) / max(fastest))
+            continue
+        _, bottom, _, top = scene.case.box
+        times.append(float(sum(-np.diff([top, *scene.case.beside(side).joints, bottom]) / fastest)))
+    return max(times)
 
 
 def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:

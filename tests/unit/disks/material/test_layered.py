@@ -95,6 +95,11 @@ def test_masses_and_sides_are_those_of_the_layers() -> None:
 
 def test_a_disk_on_a_joint_is_above_it(lattice) -> None:
     ground = ground_of(lattice, STIFF, SOFT)
-    assert ground.layer_of(np.array([10.0 - 1e-3, 10.0 - 1e-9, 10.0, 11.0])).tolist() == [1, 0, 0, 0]
+    assert ground.layer_of(np.array([[3.0, y] for y in (10.0 - 1e-3, 10.0 - 1e-9, 10.0, 11.0)])).tolist() == [
+        1,
+        0,
+        0,
+        0,
+    ]
     assert ground.at(9.9).density == 2300.0
     assert ground.at(10.0).density == 1800.0

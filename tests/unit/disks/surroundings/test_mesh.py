@@ -17,7 +17,7 @@ from dembound.disks.stability import step_limit
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.disks.surroundings.edges import edge_without
 from dembound.disks.surroundings.frequencies import frequencies_of, mean_frequency, share_above
-from dembound.disks.surroundings.mesh import medium_of
+from dembound.disks.surroundings.media import medium_of
 from dembound.kinds.disks.facts import disk_facts
 from dembound.motion.simulation import Simulation
 from dembound.packings.cut import cut_contacts

@@ -8,11 +8,11 @@ from disk_systems import LAMB
 
 from dembound.continuum import sizing
 from dembound.continuum.medium import Medium
+from dembound.disks.surroundings.elements import mesh_of
 from dembound.disks.surroundings.settings import (
     Buried,
     buried,
     lasting_time,
-    mesh_of,
     near_fields,
     settings_of,
 )

@@ -10,6 +10,7 @@ from small_cases import small
 from warned_cases import warned
 
 from dembound import api
+from dembound.check import check
 from dembound.disks.scene import build
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.kind import Disks
@@ -98,3 +99,43 @@ def test_disks_have_their_layer_in_the_record_in_pictures_and_for_paraview(run, 
     assert {float(line.get_ydata()[0]) for line in panel.lines} == {-5.0, -11.0}
     names = {text.get_text(): text.xy[1] for text in panel.texts if text.get_text() in ("clay", "sand", "rock")}
     assert names == {"clay": pytest.approx(0.0), "sand": -5.0, "rock": -11.0}
+
+
+def test_layers_that_differ_left_and_right_have_their_side(tmp_path) -> None:
+    import meshio
+
+    sided = [LAYERS[0] | {"side": "left"}, LAYERS[1] | {"thickness": 7.0, "side": "right"}, LAYERS[2]]
+    tables = {"layer": sided, "ground.meet": 4.0, "output": {"pictures": False, "snapshots": 2}, "run.duration": 0.01}
+    case = soil(
+        **tables
+        | {"boundary.left": {"type": "outside"}, "boundary.right": {"type": "outside"}}
+        | {"boundary.bottom": {"type": "outside", "wave_s": "pulse"}}
+    )
+    scene = build(case)
+    facts = dict(disk_facts(scene))
+    assert facts["layer clay, left"].startswith("y = 0 to -5 m, 1800 kg/m³, c_p = 400 m/s, ")
+    assert facts["layer rock, left"].startswith("y = -5 to -20 m and on below, ")
+    assert facts["layer sand, right"].startswith("y = 0 to -7 m, ")
+    assert facts["joint sand/rock, right"].startswith("y = -7 m; ")
+    assert facts["layers"] == "those of the left side and of the right one meet at x = 4 m"
+    assert "left of x = 4 m, where the layers meet," in facts["free field"]
+    assert [(each["name"], each["side"]) for each in describe_layers(scene)][::2] == [
+        ("clay", "left"),
+        ("sand", "right"),
+    ]
+    assert check(case)[0]["errors"].startswith("not predicted: ground.meet: errors are not predicted where the layers")
+
+    found = api.run(case, tmp_path, threads=1).folder
+    with h5py.File(found / "run.h5") as file:
+        (x, y), layer = file["particles/position"][:].T, file["particles/layer"][:]
+    np.testing.assert_array_equal(layer, np.where(x < 4.0, np.where(y > -5.0, 1, 3), np.where(y > -7.0, 2, 3)))
+    write_paraview(found / "run.h5", tmp_path / "paraview", Disks())
+    mesh = meshio.read(tmp_path / "paraview" / "particles_0001.vtu")
+    np.testing.assert_array_equal(mesh.point_data["layer"], layer)
+    panel, _ = plot_scene(found / "run.h5").axes
+    ends = {tuple(np.ravel(line.get_data()).round(6).tolist()) for line in panel.lines}
+    across = {(x1, y1) for _, x1, y1, y2 in ends if y1 == y2 == -5.0} | {
+        (x0, y1) for x0, _, y1, y2 in ends if y1 == y2 == -7.0
+    }
+    assert across == {(4.0, -5.0), (4.0, -7.0)}  # joints end and begin there
+    assert any(x0 == x1 == 4.0 and y0 == -7.0 for x0, x1, y0, _ in ends)
