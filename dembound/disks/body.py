@@ -314,19 +314,6 @@ class DiskBody(Scene):
         return None
 
     @cached_property
-    def beside_joints(self) -> np.ndarray | None:
-        """Number (m,) of the joint that each disk is beside, negative on the right of it, else 0; None without any.
-
-        Disks of opposite numbers never touch.
-        """
-        if not self.faces:
-            return None
-        found = np.zeros(self.disk_count, dtype=np.int64)
-        for number, each in enumerate(self.faces, start=1):
-            found = np.where(found == 0, number * each.side.astype(np.int64), found)
-        return found
-
-    @cached_property
     def intact_zones(self) -> dict[str, np.ndarray]:
         """The disks (k,) of each zone beside a side in which bonds do not break, by side."""
         return intact_zones(self.case, self.ground.brick, self.assembly, self.edges, self.column_count)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ from dembound.disks.columns import (
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
-from dembound.disks.faces.found import faces_of, without_crossing
+from dembound.disks.faces.found import with_joints
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import LayeredGround, layered
@@ -235,9 +236,7 @@ def _scene(
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count, surface = len(assembly.radii), case.surface
-    disks = slice(columns_end(seams), count)
-    faces = tuple(faces_of(joint, ground, assembly, disks, case.packing.box) for joint in case.joint)
-    assembly = without_crossing(assembly, faces)
+    assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
     assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
@@ -302,16 +301,8 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    alone = replace(
-        case,
-        boundary=sides | upright,
-        static=static,
-        load=everywhere,
-        hole=(),
-        joint=(),
-        monitor=(),
-        ground=case.ground.level(),
-    )
+    without: dict[str, Any] = {"load": everywhere, "hole": (), "joint": (), "monitor": ()}
+    alone = replace(case, boundary=sides | upright, static=static, ground=case.ground.level(), **without)
     standing = Standing((), seam.top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.joint import Joint
 from dembound.disks.faces.cells import intervals
 from dembound.disks.material.packed_material import PackedMaterial
@@ -87,14 +88,33 @@ def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: sli
     return faces
 
 
-def without_crossing(assembly: Assembly, faces: Sequence[Faces]) -> Assembly:
-    """An assembly without the contacts that joints replace."""
+def with_joints(
+    case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int
+) -> tuple[Assembly, tuple[Faces, ...]]:
+    """An assembly without the contacts that the joints of a case replace, and their faces.
+
+    begin : number of the first disk of the body, which follows those of columns.
+    """
+    body = slice(begin, len(assembly.radii))
+    faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box) for joint in case.joint)
     if not faces:
-        return assembly
-    crossing = np.zeros(len(assembly.pairs), dtype=np.bool_)
-    for each in faces:
-        crossing |= each.side[assembly.pairs].prod(axis=1) < 0
-    return replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
+        return assembly, ()
+    crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
+    left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
+    return left, faces
+
+
+def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:
+    """Number (n,) of the joint that each disk is beside, negative on the right of it, else 0; None without any.
+
+    Disks of opposite numbers never touch.
+    """
+    if not faces:
+        return None
+    found = np.zeros(len(faces[0].side), dtype=np.int64)
+    for number, each in enumerate(faces, start=1):
+        found = np.where(found == 0, number * each.side.astype(np.int64), found)
+    return found
 
 
 def _by_contacts(assembly: Assembly, side: np.ndarray) -> np.ndarray:

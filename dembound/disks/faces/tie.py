@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.faces.found import Faces
-from dembound.disks.material.at_rest import StressAtRest
+from dembound.disks.material.at_rest import StressAtRest, UnlikeStress
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import RunError
 from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
@@ -44,7 +44,7 @@ class JointTie(Tie):
         gives: np.ndarray,
         layout: Layout,
         time_step: float,
-        at_rest: StressAtRest | None = None,
+        at_rest: StressAtRest | UnlikeStress | None = None,
     ) -> None:
         joint, count = faces.joint, len(faces.disk)
         self.name = f"joint_{joint.name}"
@@ -109,7 +109,7 @@ class JointTie(Tie):
         bundle.counts[STEPS] = 0
         bundle.lost[:] = 0.0
 
-    def _stress(self, at_rest: StressAtRest | None, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _stress(self, at_rest: StressAtRest | UnlikeStress | None, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressure, and shear stress along the line on the left side, (m,) Pa each, of faces with normals (m, 2)."""
         if at_rest is None:
             return np.zeros(len(normal)), np.zeros(len(normal))

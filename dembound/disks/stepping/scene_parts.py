@@ -15,6 +15,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
+from dembound.disks.faces.found import numbers_beside
 from dembound.disks.faces.tie import JointTie
 from dembound.disks.material.constants import bond_factors, ground_limits
 from dembound.disks.material.layered import LayeredGround
@@ -72,6 +73,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         along_x, (first, second, vectors) = seam.width, seam.pairs(scene.ground.brick)
         held = first - nodes.start, second - nodes.start, vectors
     part = scene.assembly.part(nodes)
+    beside = numbers_beside(scene.faces)
     return ContactList(
         scene.ground.stepped,
         scene.case.material,
@@ -87,7 +89,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         Dashpots.of(scene.case.material, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
         3 * arms_per_bond(scene),
-        None if scene.beside_joints is None or name in COLUMNS else scene.beside_joints[nodes],
+        None if beside is None or name in COLUMNS else beside[nodes],
     )
 
 

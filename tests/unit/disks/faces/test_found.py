@@ -5,6 +5,7 @@ import pytest
 import tomli_w
 from small_cases import GRAINS
 
+from dembound.disks.faces.found import numbers_beside
 from dembound.disks.faces.springs import filling_springs
 from dembound.disks.scene import build
 from dembound.kinds import loads
@@ -95,7 +96,7 @@ def test_disks_of_both_sides_never_meet(pattern):
         del tables["material"]["fric"]
     scene = scene_with([[-1.0, 2.5], [11.0, 2.5]], tables, fric=0.5)
     if pattern == "elastic":
-        assert scene.beside_joints[scene.faces[0].disk].all()
+        assert numbers_beside(scene.faces)[scene.faces[0].disk].all()
         return
     pairs = scene.system(1e-4).contacts["body"]
     moved = np.zeros((3, scene.count))
