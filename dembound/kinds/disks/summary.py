@@ -52,6 +52,8 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
             facts.append(
                 f"largest error of the energy balance: {percent(error)}{_worked(summary.get('forces_at_rest'))}"
             )
+    elif summary.get("joints"):
+        facts += _broken(summary["cracks"], static)
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
