@@ -121,6 +121,11 @@ MEANINGS: dict[str, Meaning] = {
         *(1e3, 2e10, "soils, rocks and metals have", (1e3, 2e9)),
         slips=_PRESSURES,
     ),
+    "stiffness of a joint": Meaning(
+        "from a gouge to a fresh fracture under high stress; Bandis, Lumsden & Barton (1983) measured 1e9 to 4e11",
+        *(1e5, 1e14, "joints have", (1e7, 1e13)),
+        slips=(_times(1e9, "GPa/m or MPa/mm"), _times(1e6, "MPa/m"), _times(1e3, "kPa/m")),
+    ),
     "stress": Meaning(
         "from the weight of some centimetres of soil to the centre of the earth",
         *(100.0, 4e11, "soils and rocks carry", (1e3, 2e9)),

@@ -10,7 +10,7 @@ Entries = Iterator[tuple[str, str]]
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 """Prefixes of units, the largest first."""
 
-UPWARDS = ("Pa", "N", "N/m", "J", "J/m", "Hz")
+UPWARDS = ("Pa", "Pa/m", "N", "N/m", "J", "J/m", "Hz")
 """Units with prefixes above 1 only, as mPa would be read as MPa.
 
 Other units, such as of speeds, have only those below 1.

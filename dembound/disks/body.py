@@ -15,6 +15,7 @@ from dembound.casefile.disks.model import DiskCase
 from dembound.disks.bearing import Springs
 from dembound.disks.columns import COLUMNS, free_field_attributes, parts_of, rest_beside
 from dembound.disks.contacts.layout import Rows
+from dembound.disks.faces.found import Faces
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import AtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
@@ -103,6 +104,7 @@ class DiskBody(Scene):
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
     all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
+    faces : of its joints.
     """
 
     case: DiskCase
@@ -120,6 +122,7 @@ class DiskBody(Scene):
     ground_waves: Undisturbed | None = None
     surface: np.ndarray | None = None
     all_intact: bool = False
+    faces: tuple[Faces, ...] = ()
 
     kind = "disks"
     energy_unit = "J/m"

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from dembound.disks.columns import (
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
+from dembound.disks.faces.found import with_joints
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import LayeredGround, layered
@@ -234,6 +236,7 @@ def _scene(
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count, surface = len(assembly.radii), case.surface
+    assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
     assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
@@ -269,6 +272,7 @@ def _scene(
         between=between,
         ground_waves=waves,
         surface=surface,
+        faces=faces,
     )
     return with_waves(scene, case.wave)
 
@@ -297,8 +301,8 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    plain = replace(case, hole=(), wall=(), monitor=(), ground=case.ground.level())
-    alone = replace(plain, boundary=sides | upright, static=static, load=everywhere)
+    without: dict[str, Any] = {"load": everywhere, "hole": (), "wall": (), "joint": (), "monitor": ()}
+    alone = replace(case, boundary=sides | upright, static=static, ground=case.ground.level(), **without)
     standing = Standing((), seam.top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))

@@ -8,6 +8,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts.dashpots import brick_dashpots, viscosity
 from dembound.disks.contacts.layout import contact_rows
+from dembound.disks.faces.springs import filling_springs
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
@@ -201,11 +202,14 @@ def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
     # fast motion meets unrelaxed springs; of layers all are as much stiffer as those with the lowest quality factor
     relaxed = [each.relaxed for each in scene.ground.mechanisms_by_layer if each is not None and scene.ground.relaxes]
 
+    joints = filling_springs(scene.faces, scene.assembly.positions, scene.layout.slot)
+
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in scene.rows:
             contact_forces(u, rows, force)
         if relaxed:
             force /= min(relaxed)
+        joints(u, force)
         if change is not None:
             change(u, force)
         if bearing is not None:

@@ -107,7 +107,7 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     """The case with fewer copies of its brick, if it has more than `PARTICLES`, and the change in words.
 
     Layers remain whole. Sides stay the same. Holes are left out: removing particles and contacts takes rows and
-    stiffness from K, which cannot increase its largest eigenvalue.
+    stiffness from K, which cannot increase its largest eigenvalue; joints likewise.
     """
     across, up = case.packing.copies
     disks = len(ground_of(case).brick.radii)
@@ -121,6 +121,12 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     if stiffest != case.boundary:
         words.append("springs that depend on the distance of a source are those nearest to it")
     words += ["no holes, whose free walls do not lower the limit"] * bool(case.holes)
+    words += ["no joints, which are softer than the contacts that they replace"] * bool(case.joint)
     return replace(
-        case, boundary=stiffest, packing=case.packing.with_copies(*fewer), hole=(), ground=case.ground.level()
+        case,
+        boundary=stiffest,
+        packing=case.packing.with_copies(*fewer),
+        hole=(),
+        joint=(),
+        ground=case.ground.level(),
     ), words

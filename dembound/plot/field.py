@@ -1,10 +1,9 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 import h5py
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
+from dembound.plot.lines_of_ground import LayersOfSide, faults_in, foot_in, layers_in
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import (
     COMPONENTS,
@@ -46,15 +46,6 @@ SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", po
 """The meaning of a positive stress."""
 
 
-class LayersOfSide(NamedTuple):
-    """Layers from the surface down: their names, the heights of their joints, and from which x to which they are, m."""
-
-    names: tuple[str, ...]
-    joints: tuple[float, ...]
-    low: float = -math.inf
-    high: float = math.inf
-
-
 @dataclass(frozen=True)
 class Disks:
     """The disks of a run before the motion.
@@ -63,8 +54,8 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
-    ground; foot, the height (m) below which motion of the continuum is without the free field; walls (p, 2) m, the
-    points of each.
+    ground; foot, the height (m) below which motion of the continuum is without the free field; walls and faults:
+    points (k, 2) m of each wall and joint.
     """
 
     positions: np.ndarray
@@ -79,6 +70,7 @@ class Disks:
     layers: tuple[LayersOfSide, ...] = ()
     foot: float | None = None
     walls: tuple[np.ndarray, ...] = ()
+    faults: tuple[np.ndarray, ...] = ()
 
     @cached_property
     def own_window(self) -> Window:
@@ -181,23 +173,11 @@ def read_disks(file: h5py.File) -> Disks:
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
         holes=tuple(hole for hole in read_holes(file) if not hole.takes(positions, span).any()),
-        layers=tuple(_layers_in(file)),
-        foot=_foot(file),
+        layers=tuple(layers_in(file)),
+        foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
+        faults=faults_in(file),
     )
-
-
-def _layers_in(file: h5py.File) -> Iterator[LayersOfSide]:
-    """The layers of the ground in an open record, see `Disks`."""
-    names = tuple(map(text_of, file.attrs.get("layer_names", ())))
-    if "meet" not in file.attrs:
-        if names:
-            yield LayersOfSide(names, tuple(map(float, file.attrs["joints"])))
-        return
-    meet = float(file.attrs["meet"])
-    for side, low, high in (("left", -math.inf, meet), ("right", meet, math.inf)):
-        own = tuple(names[int(number) - 1] for number in file.attrs[f"{side}_layers"])
-        yield LayersOfSide(own, tuple(map(float, file.attrs[f"{side}_joints"])), low, high)
 
 
 @dataclass(frozen=True)
@@ -313,14 +293,6 @@ def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int,
     if name == "unbalanced":
         return column, f"unbalanced force {way}", "N"
     return column, f"{name} {way}", UNITS[name][column]
-
-
-def _foot(file: h5py.File) -> float | None:
-    """Height (m) below which motion of the continuum is without the free field: what the body adds; None if none is."""
-    if GROUP not in file or not is_scattered(file):
-        return None
-    lacking = ~file[f"{GROUP}/total"][:].astype(bool)
-    return float(file[f"{GROUP}/position"][:][lacking, 1].max()) if lacking.any() else None
 
 
 def _layer(file: h5py.File) -> Field:

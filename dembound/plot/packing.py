@@ -17,7 +17,8 @@ from matplotlib.patches import Rectangle
 from dembound.errors import CaseError
 from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks, frame
 from dembound.plot.field import Disks, read_disks
-from dembound.plot.scene import DRAWING, LONG, mark_walls, part_around
+from dembound.plot.lines import mark_walls
+from dembound.plot.scene import DRAWING, LONG, part_around
 from dembound.plot.style import COLOURS, finished, new_figure, styled
 from dembound.results.reader import open_record, snapshot_of, snapshots_of, walls_at
 

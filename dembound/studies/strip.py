@@ -103,7 +103,15 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
         f"the {material.law} law": given.material.law != material.law,
     }
     plain = replace(
-        case, boundary=boundary, material=material, static=None, hole=(), wall=(), load=(), ground=case.ground.level()
+        case,
+        boundary=boundary,
+        material=material,
+        static=None,
+        hole=(),
+        wall=(),
+        joint=(),
+        load=(),
+        ground=case.ground.level(),
     )
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 

@@ -169,6 +169,7 @@ class Steps:
                 ground=Ground(),
                 hole=(),
                 wall=(),
+                joint=(),
                 load=(),
                 monitor=(),
                 wave={},

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
+from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor
 from dembound.casefile.disks.material import Material
@@ -52,7 +53,7 @@ class DiskCase(Case):
     ----------
     run, ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
-    layer : from the surface down; none: the ground is uniform. hole, wall : in the order of the file.
+    layer : from the surface down; none: the ground is uniform. hole, wall, joint : in the order of the file.
     """
 
     run: DiskRun
@@ -68,6 +69,7 @@ class DiskCase(Case):
     layer: tuple[Layer, ...] = ()
     hole: tuple[Hole, ...] = ()
     wall: tuple[Wall, ...] = ()
+    joint: tuple[Joint, ...] = ()
     load: tuple[Load, ...] = ()
     monitor: tuple[Monitor, ...] = ()
 

@@ -18,6 +18,7 @@ from dembound.casefile.disks.incident import (
     is_damped,
     motion_problems,
 )
+from dembound.casefile.disks.joint import Joint, joint_problems
 from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
 from dembound.casefile.disks.material import BOND_KEYS, ROLLING_KEY, Material
@@ -81,6 +82,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         for key in ("load", "monitor"):
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])
     yield from hole_problems(tables, "static" in given)
+    yield from joint_problems(tables)
     yield from lowered_problems(tables)
     yield from unlike_problems(tables)
     yield from law_problems(tables)
@@ -217,6 +219,7 @@ SCHEMA = Schema(
         "layer": TypeAdapter(Layer),
         "hole": TypeAdapter(HoleTable),
         "wall": TypeAdapter(Wall),
+        "joint": TypeAdapter(Joint),
         "load": TypeAdapter(Load),
         "monitor": TypeAdapter(MonitorTable),
     },

@@ -48,7 +48,8 @@ class ContactList(RenewedList):
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
-        relaxation arms, see `Contacts`.
+        relaxation arms, see `Contacts`. beside : (m,) number of the joint each particle is beside, opposite on its two
+        sides, else 0: particles of opposite numbers never touch. None: there are no joints.
 
     Attributes
     ----------
@@ -78,6 +79,7 @@ class ContactList(RenewedList):
         dashpots: Dashpots | None = None,
         intact: np.ndarray | None = None,
         lags: int = 0,
+        beside: np.ndarray | None = None,
     ) -> None:
         super().__init__(assembly, periods, begin, layout)
         self.ground, self.factors, self.dashpots, self.lags = ground, factors, dashpots, lags
@@ -85,6 +87,10 @@ class ContactList(RenewedList):
         self._friction, self._rolling = (None, np.zeros(0)) if layers is None else layers[1:]
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
+        self._beside = None
+        if beside is not None:
+            self._beside = np.zeros(self._slots.stop, dtype=np.int64)
+            self._beside[self._slot] = beside
         self.skin = SKIN * ground.brick.mean_diameter
         self.time_step = 0.0
         self._set_origin(np.zeros((2, len(assembly.radii))), np.full(len(assembly.radii), 0.5 * self.skin))

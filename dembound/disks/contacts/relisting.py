@@ -37,6 +37,7 @@ class RenewedList(PairList):
     _built_order: np.ndarray
     _held: np.ndarray
     _left_out: int
+    _beside: np.ndarray | None
     _cracks: list[Cracks]
 
     def is_old(self, u: np.ndarray) -> bool:
@@ -89,7 +90,11 @@ class RenewedList(PairList):
         reach = np.where(self.retired[ranks], -np.inf, radii + own)
         usual = (float(radii.max()) + float(own.min())) * (1.0 + 1e-12)  # of disks that are not fast
         lengths = np.array([length or 0.0 for length in self.periods])
-        return near_keys((self.assembly.positions + moved)[ranks], reach, lengths, slot, usual)
+        keys = near_keys((self.assembly.positions + moved)[ranks], reach, lengths, slot, usual)
+        if self._beside is None:
+            return keys
+        one, other = self._beside[pairs_of(keys, self._slots.stop)[0].T]
+        return keys[(one != -other) | (one == 0)]
 
     def _met(self, keys: np.ndarray, source: np.ndarray, *, shares: bool) -> Pairs:
         """Pairs (k,) of some keys that are not listed; contacts of the brick that had parted have their constants.

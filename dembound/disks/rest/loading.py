@@ -123,7 +123,7 @@ class Loading:
             inner, load = system.forces.last(system.contacts), self._load(start)
         else:
             inner, load = system.forces.elastic(start), system.steady if system.steady.size else system.load
-        return load + inner + system.forces.of_ties(start)
+        return load + inner + system.forces.of_ties(start) + system.forces.of_joints(start)
 
     def _load(self, displacement: np.ndarray) -> np.ndarray:
         """All loads (3, n) at displacements (3, n); they rotate with sides only under a law of updated geometry."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
+from itertools import chain
 from typing import Any, Self
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from dembound.disks.contacts.pairs import Piece, pieces
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import packing_pieces
+from dembound.disks.stepping.fields import joint_pieces
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.stepping.walls import Touching
@@ -110,7 +112,8 @@ class Blocks:
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
     part = system.disks.parts[-1]
-    found = pieces(scene.layout, part.stressed_pairs, displacement, part.geometry)
+    of_contacts = pieces(scene.layout, part.stressed_pairs, displacement, part.geometry)
+    found = chain(of_contacts, joint_pieces(system.joints, scene, displacement))
     if part.geometry != UPDATED:
         return Blocks.of(scene).stress(found, scene.positions)
     return Blocks.of(scene, displacement).stress(found, scene.positions + displacement[:2].T)
@@ -216,7 +219,7 @@ class Settled:
             kept |= {f"walls/{name}": values for name, values in start.touching._asdict().items()}
         for part, pairs in start.contacts.items():
             kept |= {f"contacts/{part}/{name}": values for name, values in pairs.saved_arrays().items()}
-        return kept
+        return kept | {f"joints/{name}": values for name, values in start.joints.items()}
 
     @classmethod
     def restored(cls, scene: DiskScene, saved: Arrays) -> Self:
@@ -224,7 +227,7 @@ class Settled:
         contacts = contact_lists(scene) if any(name.startswith("contacts/") for name in saved) else {}
         for part, pairs in contacts.items():
             pairs.restore(arrays_of_owner(saved, f"contacts/{part}"))
-        walls = arrays_of_owner(saved, "walls")
+        walls, joints = arrays_of_owner(saved, "walls"), arrays_of_owner(saved, "joints")
         cracks, uniformity = arrays_of_owner(saved, "cracks"), arrays_of_owner(saved, "uniformity")
         return cls(
             start=Start(
@@ -232,6 +235,7 @@ class Settled:
                 contacts,
                 bool(saved["has_history"]),
                 Touching(**{name: values.copy() for name, values in walls.items()}) if walls else None,
+                joints,
             ),
             steps=int(saved["steps"]),
             ratio=float(saved["ratio"]),
@@ -273,6 +277,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["outside_sides"] = scene.outside.sides
         if scene.ground.is_layered:
             keys["outside_rows"] = [float(height) for height in scene.outside.body.mesh.heights]
+    if case.joint:
+        keys["joint"] = case.joint
     if case.intact:
         keys["intact"] = case.intact
     if case.layer:

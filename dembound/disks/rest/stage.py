@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.disks.columns import COLUMNS
+from dembound.disks.faces.tie import cracks_of, states_of
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
@@ -118,14 +119,15 @@ class UntilAtRest(Tracker):
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since the last call."""
-        return joined([pairs.take_cracks() for pairs in self._contacts.values()])
+        return joined([*(pairs.take_cracks() for pairs in self._contacts.values()), cracks_of(self._system.joints)])
 
     def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, n) of contacts and ties now, under the elastic law with the locked-in forces."""
         if not self._system.uses_history:
             for pairs in self._contacts.values():
                 pairs.push(displacement, reference=True)
-        return self._system.forces.last(self._contacts) + self._system.forces.of_ties(displacement)
+        forces = self._system.forces
+        return forces.last(self._contacts) + forces.of_ties(displacement) + forces.of_joints(displacement)
 
 
 def _where_it_ended(run: Run, ratio: float, enough: float, most: int, unbalanced: np.ndarray, cracks: Cracks) -> str:
@@ -305,6 +307,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
             system.contacts,
             system.uses_history,
             None if system.walls is None else system.walls.touching,
+            states_of(system.joints),
         ),
         steps=simulation.state.step,
         ratio=rest.ratio,

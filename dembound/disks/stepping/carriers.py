@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from dembound.boundaries.edge import OPPOSITE, SIDES, normal_axis
 from dembound.disks.body import DiskBody
 from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.faces.tie import JointTie
 from dembound.disks.stepping.scene_parts import DiskParts, contact_lists, disks_on_foot
 from dembound.disks.stepping.walls import WallPart
 from dembound.packings.cut import cut_contacts
@@ -21,12 +22,14 @@ class RestForces:
 
     Parameters
     ----------
-    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed. walls : its walls, as
-    further contacts; None: there are none.
+    scene : the scene. disks : its parts of disks, whose contacts keep the last forces computed. joints : of the scene.
+    walls : its walls, as further contacts; None: there are none.
     """
 
-    def __init__(self, scene: DiskBody, disks: DiskParts, walls: WallPart | None = None) -> None:
-        self._scene, self._disks, self._walls = scene, disks, walls
+    def __init__(
+        self, scene: DiskBody, disks: DiskParts, joints: Sequence[JointTie], walls: WallPart | None = None
+    ) -> None:
+        self._scene, self._disks, self._joints, self._walls = scene, disks, joints, walls
 
     def elastic(self, displacement: np.ndarray) -> np.ndarray:
         """Forces (3, n) of contacts and of the seam under the elastic law."""
@@ -84,6 +87,10 @@ class RestForces:
             disks = disks_on_foot(scene)
             force[:, disks] += force[:, scene.seams[0].twin[disks]]
         return force
+
+    def of_joints(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces (3, n) of the joints."""
+        return sum((joint.force_at(displacement) for joint in self._joints), np.zeros_like(displacement))
 
     def shift(self, datum: np.ndarray) -> np.ndarray:
         """Forces that shift the zero of the springs of supports, and of the ties to continua, to a datum (3, n)."""

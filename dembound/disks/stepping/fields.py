@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,26 +10,32 @@ import numpy as np
 
 from dembound.continuum.part import GridPart
 from dembound.disks.body import DiskBody
-from dembound.disks.contacts.pairs import contact_columns, pieces, plain_contacts
+from dembound.disks.contacts.pairs import Piece, contact_columns, pieces, plain_contacts
+from dembound.disks.faces.tie import JointTie, cracks_of
 from dembound.disks.stepping.damped_ground import unrelaxed
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.scene_parts import DiskParts
 from dembound.disks.stepping.walls import WallPart
 from dembound.kernels.contacts import REFERENCE
 from dembound.kernels.tables.contacts import Contacts
-from dembound.motion.part import Part, System, Tie
+from dembound.motion.part import Cracks, Part, System, Tie, joined
 
 
-def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
+def part_stress(
+    scene: DiskBody, part: DiskPart, displacement: np.ndarray, joints: Sequence[JointTie] = ()
+) -> np.ndarray:
     """Total stress (m, 3) of one part's particles, including that of a static stage, see `particle_stress`.
 
-    displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
-    step.
+    displacement (3, n) m and rad. Under the history-dependent law its forces, and those of joints, are those at the
+    beginning of the last step.
     """
-    return particle_stress(scene, part.stressed_pairs, displacement, part.geometry)[part.nodes]
+    more = joint_pieces(joints, scene, displacement)
+    return particle_stress(scene, part.stressed_pairs, displacement, part.geometry, more)[part.nodes]
 
 
-def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, geometry: int) -> np.ndarray:
+def particle_stress(
+    scene: DiskBody, contacts: Contacts, displacement: np.ndarray, geometry: int, more: Iterable[Piece] = ()
+) -> np.ndarray:
     """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
 
     A particle's stress is Σ f_a l n_b over its area, πR² plus its share of the pores, half of that for half cells, with
@@ -42,15 +48,27 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     contacts : its pairs.
     displacement : (3, n) m and rad.
     geometry : of the forces and vectors of the pairs, see `forces.pieces`.
+    more : other pairs with forces.
     """
     moments = np.zeros((3, scene.disk_count))
-    for piece in pieces(scene.layout, contacts, displacement, geometry):
+    for piece in chain(pieces(scene.layout, contacts, displacement, geometry), more):
         (x, y), (pull_x, pull_y) = piece.vector, piece.force
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
             np.add.at(total, piece.first, piece.near * dyad)
             np.add.at(total, piece.second, (1.0 - piece.near) * dyad)
     area = np.pi * scene.assembly.radii**2 * scene.cell_fraction / scene.ground.brick.solid_fraction
     return (moments / area).T
+
+
+def joint_pieces(joints: Sequence[JointTie], scene: DiskBody, displacement: np.ndarray) -> Iterator[Piece]:
+    """The forces of joints of the last step as those of pairs of disks, at displacements (3, n)."""
+    for joint in joints:
+        pairs, faces = joint.acting, joint.faces
+        first, second = faces.disk[pairs.first], faces.disk[pairs.second]
+        vector = (scene.positions[second] - scene.positions[first]).T
+        vector = vector + displacement[:2, second] - displacement[:2, first]
+        closed, half = (pairs.pressure != 0.0) | (pairs.shear != 0.0), np.full(len(first), 0.5)
+        yield Piece(first, second, pairs.intact | faces.joint.is_linear, closed, vector, half, joint.forces(pairs))
 
 
 def turns_freely(scene: DiskBody) -> bool:
@@ -89,21 +107,22 @@ class RecordedDisks(System):
 
     Parameters
     ----------
-    scene : the scene. disks : its parts of disks. beyond : its continua. ties : all of the scene. load : (3, n) N and
-    N·m, steady forces and moments. walls : that its disks touch; None: there are none.
+    scene : the scene. disks : its parts of disks. joints : its joints. beyond : its continua. ties : all of the scene.
+    load : (3, n) N and N·m, steady forces and moments. walls : that its disks touch; None: there are none.
     """
 
     def __init__(
         self,
         scene: DiskBody,
         disks: DiskParts,
+        joints: Sequence[JointTie],
         beyond: Sequence[Part],
         ties: Sequence[Tie],
         load: np.ndarray,
         walls: WallPart | None = None,
     ) -> None:
         super().__init__([*filter(None, [walls]), *disks.parts, *beyond], ties, load)
-        self.scene, self.disks, self.walls = scene, disks, walls
+        self.scene, self.disks, self.joints, self.walls = scene, disks, tuple(joints), walls
         self._stress_at_rest: np.ndarray | None = None
 
     def laws(self) -> tuple[NamedTuple, ...]:
@@ -125,6 +144,15 @@ class RecordedDisks(System):
         """The parts whose nodes are recorded as particles, those of disks."""
         return self.disks.parts
 
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) in contacts, with that of joints, and in bonds at displacements (3, slots)."""
+        in_contacts, in_bonds = super().stored(u)
+        return in_contacts + sum(joint.stored() for joint in self.joints), in_bonds
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called, and the places where joints lost their strength."""
+        return joined([super().take_cracks(steps), cracks_of(self.joints)])
+
     def stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (m, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive.
 
@@ -139,7 +167,9 @@ class RecordedDisks(System):
 
     def _unrelaxed_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (m, 3) at displacements (3, n) that have just been reached."""
-        return np.concatenate([part_stress(self.scene, part, displacement) for part in self.disks.parts])
+        joints = {self.disks.parts[-1].name: self.joints}  # they are in the body
+        each = [part_stress(self.scene, p, displacement, joints.get(p.name, ())) for p in self.disks.parts]
+        return np.concatenate(each)
 
     def _note_rest(self, datum: np.ndarray) -> None:
         """Note the stress at rest at displacements (3, n), if it will be needed."""
@@ -172,4 +202,4 @@ class RecordedDisks(System):
             displacement = scene.widened("displacement", displacement.T).T
             lists = [(plain_contacts(whole.ground, whole.assembly, whole.layout.slot), REFERENCE)]
         each = (pieces(whole.layout, pairs, displacement, geometry) for pairs, geometry in lists)
-        return contact_columns(chain.from_iterable(each))
+        return contact_columns(chain(*each, joint_pieces(self.joints, scene, displacement)))

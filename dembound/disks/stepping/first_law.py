@@ -128,10 +128,12 @@ def balanced(
     """
     shift = forces.shift(datum)
     inner = forces.with_history(datum, fresh=not law.goes_on) if scene.has_history else forces.elastic(datum)
+    joints = forces.of_joints(datum)
+    inner += joints
     force = shift - inner - load
     ended = np.where(_let_go(scene), force, 0.0)
     balance = Balance(scene, force - ended, load, datum, forces.across(disks.contacts))
-    return balance, shift - forces.elastic(datum) - ended
+    return balance, shift - forces.elastic(datum) - joints - ended
 
 
 def _let_go(scene: DiskBody) -> np.ndarray:

@@ -15,6 +15,8 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
+from dembound.disks.faces.found import numbers_beside
+from dembound.disks.faces.tie import JointTie
 from dembound.disks.material.constants import bond_factors, ground_limits
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.stepping.arms import arms_of, arms_per_bond
@@ -28,7 +30,7 @@ from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
 from dembound.laws.law import AnyLimits
 from dembound.motion.part import Tie
-from dembound.motion.state import Layout
+from dembound.motion.state import Layout, arrays_of_owner
 from dembound.packings.tiling import Assembly
 
 
@@ -38,13 +40,14 @@ class Start:
 
     contacts : of each part by name, empty if the scene's law has no history. The system that starts from them changes
     them, so a start can be used only once. has_history : whether they have any history. touching : the contacts with
-    walls; None without any.
+    walls; None without any. joints : what joints remember, see `faces.tie.states_of`.
     """
 
     displacement: np.ndarray
     contacts: Mapping[str, ContactList] = field(default_factory=dict)
     has_history: bool = False
     touching: Touching | None = None
+    joints: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def left_elastic_law(self) -> bool:
@@ -72,6 +75,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         along_x, (first, second, vectors) = seam.width, seam.pairs(scene.ground.brick)
         held = first - nodes.start, second - nodes.start, vectors
     part = scene.assembly.part(nodes)
+    beside = numbers_beside(scene.faces)
     return ContactList(
         scene.ground.stepped,
         scene.case.material,
@@ -87,6 +91,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         Dashpots.of(scene.case, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
         None if scene.intact is None else scene.intact[nodes],
         3 * arms_per_bond(scene),
+        None if beside is None or name in COLUMNS else beside[nodes],
     )
 
 
@@ -189,6 +194,18 @@ def walls(scene: DiskBody) -> list[Tie]:
     return walls
 
 
+def joint_ties(scene: DiskBody, start: Start | None, time_step: float) -> list[JointTie]:
+    """The joints of a scene, with the history of the body from which it starts, or as built."""
+    gives = scene.moves / np.stack([scene.mass, scene.mass, scene.inertia])
+    ties = []
+    for faces in scene.faces:
+        tie = JointTie(faces, scene.assembly.positions, scene.ground, gives, scene.layout, time_step, scene.at_rest)
+        if start is not None and start.joints:
+            tie.go_on_from(arrays_of_owner(start.joints, tie.name))
+        ties.append(tie)
+    return ties
+
+
 class DiskParts:
     """The parts of disks of a scene, which change their law together.
 
@@ -209,7 +226,8 @@ class DiskParts:
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = contact_lists(scene) if start is None else start.contacts
-        supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
+        beside = [each.disk for each in scene.faces]
+        supported = scene.layout.slot[np.union1d(scene.supports.node, np.concatenate([tied_nodes(scene), *beside]))]
         ground, layout = scene.ground.stepped, scene.layout
         self.parts = tuple(
             DiskPart(

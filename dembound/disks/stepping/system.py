@@ -15,7 +15,7 @@ from dembound.disks.stepping.damped_ground import drag_rates
 from dembound.disks.stepping.fields import RecordedDisks, turned_as_a_whole, turns_freely
 from dembound.disks.stepping.first_law import balanced, first_law, not_balanced
 from dembound.disks.stepping.near_ties import NearTies
-from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, walls
+from dembound.disks.stepping.scene_parts import DiskParts, Start, grids, joint_ties, walls
 from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.stepping.walls import WallPart
 from dembound.disks.surroundings.jump import JumpTie
@@ -61,10 +61,12 @@ class DiskSystem(RecordedDisks):
         disks = DiskParts(scene, start, None if settling else time_step, watches=not settling)
         for pairs in disks.contacts.values():
             pairs.time_step = time_step
+        joints = joint_ties(scene, start, time_step)
         ties = [*walls(scene), *disks.seams]
         if disks.damped_ties is not None:  # last of those that it remembers
             ties.insert(len(ties) if disks.remembers_seams else len(ties) - len(disks.seams), disks.damped_ties)
         self._bearing = None if settling or scene.bearing is None else BearingTie(scene.bearing, scene.layout)
+        ties += joints
         if self._bearing is not None:
             ties.append(self._bearing)
         if scene.outside is not None and scene.outside.body.mesh.slit and not settling:
@@ -72,6 +74,7 @@ class DiskSystem(RecordedDisks):
         super().__init__(
             scene,
             disks,
+            joints,
             grids(scene, time_step, damped=not settling),
             ties,
             scene.steady_load if load is None else load,
@@ -79,7 +82,7 @@ class DiskSystem(RecordedDisks):
         )
         if not settling:
             self.drag = drag_rates(scene)
-        self.forces = RestForces(scene, disks, self.walls)
+        self.forces = RestForces(scene, disks, joints, self.walls)
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self._time_step, self._start, self._settling = time_step, start, settling
@@ -151,12 +154,21 @@ class DiskSystem(RecordedDisks):
             self.switch(state)
         elif self.balance is not None and looks:
             self.balance.end_on_debris(
-                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self.scene.intact
+                self.disks.parts, state.displacement, state.velocity, self._time_step, self.steady, self._held
             )
             self._let_go()
         super().react(why, steps, state)
         if looks:
             self.look_near_ties(state)
+
+    @property
+    def _held(self) -> np.ndarray | None:
+        """Disks (m,) by which pieces are not debris: those whose bonds never break, and those pressed on a joint."""
+        held = self.scene.intact
+        for joint in self.joints:
+            held = np.zeros(self.scene.disk_count, dtype=np.bool_) if held is None else held.copy()
+            held[joint.pressed] = True
+        return held
 
     def look_near_ties(self, state: State) -> None:
         """Note contacts near ties to a continuum that have opened or slid, which the elastic law does not describe."""

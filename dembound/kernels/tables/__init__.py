@@ -18,6 +18,7 @@ from dembound.kernels.tables.grid import (
     Shape,
     TieMemories,
 )
+from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
 from dembound.kernels.tables.laws import (
     Arms,
     BarBonds,
@@ -61,8 +62,11 @@ __all__ = [
     "DampedLinks",
     "Drag",
     "Elements",
+    "FacePairs",
     "Followers",
     "Grid",
+    "JointFaces",
+    "JointLaw",
     "Jump",
     "LaneBonded",
     "LaneRows",

@@ -23,6 +23,7 @@ from dembound.formulas.disks.reflections import sent_back
 from dembound.kinds.disks.continuum_facts import continuum_facts
 from dembound.kinds.disks.ground import ground_facts, particles_per
 from dembound.kinds.disks.incident_wave import incident_facts
+from dembound.kinds.disks.joints import joint_facts
 from dembound.kinds.disks.slopes import slope_facts
 from dembound.kinds.disks.summary import describe_side
 from dembound.kinds.disks.walls import wall_facts
@@ -45,6 +46,7 @@ def disk_facts(scene: DiskScene) -> Entries:
         yield "vector lanes", f"{100.0 * fill(scene.layout):.0f} % hold particles"
     yield from ground_facts(scene)
     yield from _hole_facts(case)
+    yield from joint_facts(scene)
     yield from _static_facts(scene)
     yield from intact_facts(scene)
     yield from slope_facts(scene)

@@ -19,6 +19,7 @@ from dembound.disks.stepping.side_watch import WARNS, lasting_force_warnings, re
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.watches import FarDisks, Turns, far_warnings, turn_warnings
 from dembound.kinds.disks.ground import describe_layers, packing_quantities
+from dembound.kinds.disks.joints import describe_joints, joint_warnings
 from dembound.motion.part import MANY
 from dembound.motion.trackers import Run
 from dembound.results.reader import cracks_until, laws_in_words, open_record
@@ -55,6 +56,8 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
             facts.append(
                 f"largest error of the energy balance: {percent(error)}{_worked(summary.get('forces_at_rest'))}"
             )
+    elif summary.get("joints"):
+        facts += _broken(summary["cracks"], static)
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
@@ -134,6 +137,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "forces_at_rest": _describe_forces_at_rest(run),
         "far": _describe_far(run),
         "turns": _describe_turns(run),
+        "joints": describe_joints(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
 
@@ -271,6 +275,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *reach_warnings(summary.get("forces_at_rest")),
             *far_warnings(summary.get("far")),
             *turn_warnings(summary.get("turns"), scene.case.material.law, has_history=scene.has_history),
+            *joint_warnings(summary.get("joints", {})),
             *energy_warnings(scene, summary["energy"], file),
         ]
 

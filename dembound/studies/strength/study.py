@@ -108,18 +108,22 @@ class Strength:
 
 T = TypeVar("T", bound=Table)
 
+STRENGTHS = ("fric", "rr_fric", "ten", "coh", "pb_ten", "pb_coh", "pb_fa")
+"""Keys of [material], layers and joints that are strengths."""
+
 
 def weaker(case: DiskCase, factor: float) -> DiskCase:
-    """The case with all strengths, of [material] and of layers, divided by a factor."""
+    """The case with all strengths, of [material], of layers and of joints, divided by a factor."""
 
     def divided(table: T) -> T:
-        given = {key: getattr(table, key, None) for key in ("fric", "rr_fric", "pb_ten", "pb_coh", "pb_fa")}
+        given = {key: getattr(table, key, None) for key in STRENGTHS}
         changes = {key: value / factor for key, value in given.items() if value}
         if angle := given["pb_fa"]:
             changes["pb_fa"] = degrees(atan(tan(radians(angle)) / factor))
         return table.model_copy(update=changes)
 
-    return replace(case, material=divided(case.material), layer=tuple(map(divided, case.layer)))
+    layers, joints = tuple(map(divided, case.layer)), tuple(map(divided, case.joint))
+    return replace(case, material=divided(case.material), layer=layers, joint=joints)
 
 
 def require_strengths(case: DiskCase) -> None:

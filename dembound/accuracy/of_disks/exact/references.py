@@ -78,7 +78,7 @@ class ExactPlaneWave(Exact[DiskCase]):
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])
-        if case.side(side).is_interface or far.is_interface:
+        if case.side(side).is_interface or far.is_interface or case.joint:
             return None
         if len(waves) != 1 or not far.factors or far.waves or not LAWS[case.material.law].is_linear:
             return None
@@ -126,7 +126,14 @@ class ExactLayeredColumn(Exact[DiskCase]):
     @classmethod
     def of(cls, case: DiskCase) -> ExactLayeredColumn | None:
         """The solution of a case; None if it is another problem. Raises CaseError for a wave that jumps."""
-        if len(case.layer) < 2 or case.holes or case.load or case.static or list(case.driving) != ["bottom"]:
+        if (
+            len(case.layer) < 2
+            or case.holes
+            or case.joint
+            or case.load
+            or case.static
+            or list(case.driving) != ["bottom"]
+        ):
             return None
         bottom, top = case.side("bottom"), case.side("top")
         enters = (bottom.factors or bottom.is_outside) and not bottom.is_interface

@@ -94,7 +94,7 @@ def test_the_summary_of_disks_is_plain_json(bar, law: str) -> None:
     found = json.loads(json.dumps(summarise_disks(planned.scene, simulation), allow_nan=False))
 
     of_scene = {"particles", "has_history", "contacts", "loose_disks_left_out", "packing", "layers", "boundaries"}
-    assert set(found) == of_scene | {"load_factor", "forces_at_rest", "far", "turns"}
+    assert set(found) == of_scene | {"load_factor", "forces_at_rest", "far", "turns", "joints"}
     assert found["load_factor"] is None
     assert (found["particles"], found["contacts"], found["loose_disks_left_out"]) == (40, 2 * 19 + 20, 0)
     assert found["has_history"] == (law == "linearpbond")

@@ -1,0 +1,234 @@
+"""The forces of a joint on the disks beside it, as a tie of the scene, with their history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.faces.found import Faces
+from dembound.disks.material.at_rest import StressAtRest, UnlikeStress
+from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import RunError
+from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
+from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
+from dembound.motion.part import Cracks, Tie, joined
+from dembound.motion.state import Arrays, Layout
+
+ROOM = 8
+"""Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other."""
+
+MARGIN = 0.25
+"""By how much faces may lie apart that are listed as pairs, over the mean diameter."""
+
+DELAY = 1.0
+"""Way of P waves, over the mean diameter, in the time in which friction follows a change of pressure."""
+
+
+class JointTie(Tie):
+    """The faces of a joint with what they remember.
+
+    Parameters
+    ----------
+    faces : of the joint. positions : (n, 2) m of the scene's disks. ground : their material. gives : (3, n) inverse
+    masses and moments of inertia of the scene's nodes, 0 for what is held or prescribed. layout : slots of the scene.
+    time_step : s. at_rest : the stress with which the faces begin; None: without.
+    """
+
+    def __init__(
+        self,
+        faces: Faces,
+        positions: np.ndarray,
+        ground: PackedMaterial,
+        gives: np.ndarray,
+        layout: Layout,
+        time_step: float,
+        at_rest: StressAtRest | UnlikeStress | None = None,
+    ) -> None:
+        joint, count = faces.joint, len(faces.disk)
+        self.name = f"joint_{joint.name}"
+        self.faces, self._layout, self._count = faces, layout, layout.count
+        self._nodes = np.unique(faces.disk)
+        self._known: np.ndarray | None = None
+        diameter, speed = ground.brick.mean_diameter, float(np.sqrt(ground.material_tensor[0, 0] / ground.density))
+        kn, ks = faces.stiffness.tolist()
+        normal = np.stack([-faces.along[:, 1], faces.along[:, 0]], axis=1)
+        centre, first = positions[faces.disk], faces.ends[:, 0]
+        height = np.sum((centre - first) * normal, axis=1)
+        height[faces.split :] *= -1.0
+        pressure, shear = self._stress(at_rest, normal)
+        room = ROOM * count
+        self._bundle = JointFaces(
+            law=JointLaw(
+                kn=kn,
+                ks=ks,
+                friction=float(joint.fric or 0.0),
+                tension=joint.ten,
+                cohesion=joint.coh,
+                dashpot=joint.dashpot * ground.density * speed,
+                step=time_step,
+                follows=1.0 - float(np.exp(-time_step * speed / (DELAY * diameter))),
+                fails=not joint.is_linear,
+                margin=MARGIN * diameter,
+                reach=diameter,
+            ),
+            split=faces.split,
+            disk=layout.slot[faces.disk].astype(np.int64),
+            line=np.zeros(count, dtype=np.int64),
+            centre=centre,
+            ends=faces.ends.reshape(-1, 4).copy(),
+            along=faces.along,
+            height=height,
+            closure=0.5 * pressure / kn,
+            pairs=_empty_pairs(room),
+            spare=_empty_pairs(room),
+            counts=np.zeros(4, dtype=np.int64),
+            listed=np.zeros((count, 2)),
+            now=np.zeros((count, 4)),
+            gives=np.ascontiguousarray(gives[:, faces.disk].T),
+            force=np.zeros((count, 3)),
+            kick=np.zeros((count, 3)),
+            lost=np.zeros(3),
+            events=np.zeros((room, 6)),
+        )
+        self._begin(shear)
+
+    def _begin(self, shear: np.ndarray) -> None:
+        """List the first pairs, with the shear stress (m,) Pa of the faces and the strength of the joint."""
+        bundle, joint = self._bundle, self.faces.joint
+        rest = np.zeros((3, self._count))
+        list_faces(bundle, rest)
+        found, pairs = slice(0, int(bundle.counts[PAIRS])), bundle.pairs
+        pairs.length[found] = np.inf  # so that slip is kept
+        one, other = pairs.first[found], pairs.second[found]
+        pairs.slip[found] = 0.5 * (shear[one] + shear[other]) / bundle.law.ks
+        pairs.intact[found] = joint.ten > 0.0 or joint.coh > 0.0
+        pairs.bearing[found] = bundle.law.kn * (bundle.closure[one] + bundle.closure[other])
+        push_faces(bundle, rest, rest)
+        bundle.counts[STEPS] = 0
+        bundle.lost[:] = 0.0
+
+    def _stress(self, at_rest: StressAtRest | UnlikeStress | None, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure, and shear stress along the line on the left side, (m,) Pa each, of faces with normals (m, 2)."""
+        if at_rest is None:
+            return np.zeros(len(normal)), np.zeros(len(normal))
+        x, y = self.faces.ends.mean(axis=1).T
+        xx, yy, xy = at_rest.at(y, x)
+        pull = np.stack([xx * normal[:, 0] + xy * normal[:, 1], xy * normal[:, 0] + yy * normal[:, 1]], axis=1)
+        return -np.sum(pull * normal, axis=1), -np.sum(pull * self.faces.along, axis=1)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Disks (k,) with faces, ascending."""
+        return self._nodes
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The arrays for the kernels; supported (s,) are all nodes of the support table, ascending.
+
+        Raises RunError where more faces lie side by side than there is room for, as where disks are heaped up.
+        """
+        if self._known is not supported:
+            self._known = supported
+            self._bundle.line[:] = np.searchsorted(supported, self.faces.disk)
+        self._require_room()
+        return self._bundle
+
+    def _require_room(self) -> None:
+        """Raise RunError if pairs of faces are missing."""
+        counts, room = self._bundle.counts, len(self._bundle.pairs.first)
+        if counts[NEEDED] > room:
+            name = self.faces.joint.name
+            raise RunError(f'disks are heaped up on joint "{name}": more than {room:,} pairs of faces touch there')
+
+    def force_at(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, n) N and N·m at displacements (3, n) of disks at rest; what it remembers stays."""
+        found = _copied(self._bundle)
+        push_faces(found, self._layout.spread(displacement), np.zeros((3, self._count)))
+        force = np.zeros_like(displacement)
+        np.add.at(force.T, self.faces.disk, found.force)
+        return force
+
+    def stored(self) -> float:
+        """Energy (J) in its springs at the last step."""
+        bundle = self._bundle
+        return float(bundle.pairs.energy[: bundle.counts[PAIRS]].sum())
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """Disks (k,) of faces that press on others, or are held by the joint's strength."""
+        pairs = self.acting
+        there = (pairs.pressure > 0.0) | pairs.intact | self.faces.joint.is_linear
+        return self.faces.disk[np.concatenate([pairs.first[there], pairs.second[there]])]
+
+    def forces(self, pairs: FacePairs) -> np.ndarray:
+        """Forces (2, k) N of the last step on the disks of the first faces of pairs."""
+        along = self.faces.along[pairs.first] + self.faces.along[pairs.second]
+        along = (along / np.hypot(*along.T)[:, None]).T
+        push, rub = pairs.length * pairs.pressure, pairs.length * pairs.shear
+        return np.stack([rub * along[0] - push * along[1], rub * along[1] + push * along[0]])
+
+    @property
+    def acting(self) -> FacePairs:
+        """The pairs that overlap."""
+        pairs = self._bundle.pairs
+        chosen = np.flatnonzero(pairs.length[: self._bundle.counts[PAIRS]] > 0.0)
+        return FacePairs(*(each[chosen] for each in pairs))
+
+    def take_cracks(self) -> Cracks:
+        """The places that lost their strength since the last call, as cracks between the disks of two faces."""
+        number = int(self._bundle.counts[EVENTS])
+        events = self._bundle.events[:number]
+        both = events[:, 1:3].astype(np.int64)
+        found = Cracks(events[:, 0].astype(np.int64), self.faces.disk[both], events[:, 3:5].copy(), events[:, 5] > 0.0)
+        self._bundle.counts[EVENTS] = 0
+        return found
+
+    def saved_arrays(self) -> Arrays:
+        """The pairs with their history, and events not yet recorded."""
+        bundle = self._bundle
+        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("counts", "listed", "events")}
+        return kept | {f"pair_{name}": values for name, values in bundle.pairs._asdict().items()}
+
+    def restore(self, saved: Arrays) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        for name, values in self.saved_arrays().items():
+            if saved[name].shape != values.shape:
+                raise ValueError(f"{self.name}: {name} has the shape {saved[name].shape}, must have {values.shape}")
+            values[...] = saved[name]
+        bundle = self._bundle
+        if not (bundle.counts >= 0).all() or bundle.counts[PAIRS] > len(bundle.pairs.first):
+            raise ValueError(f"{self.name}: has no {bundle.counts[PAIRS]} pairs")
+        faces = np.concatenate([bundle.pairs.first, bundle.pairs.second])
+        if not ((faces >= 0) & (faces < len(self.faces.disk))).all():
+            raise ValueError(f"{self.name}: a pair has faces that there are not")
+
+    def go_on_from(self, saved: Arrays) -> None:
+        """Take over the history (arrays of `saved_arrays`) of the joint of a settled body; steps are counted anew."""
+        self.restore(saved)
+        self._bundle.counts[[STEPS, EVENTS]] = 0
+
+
+def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
+    """The arrays of all joints, copied, by the names of joint and array."""
+    return {f"{tie.name}/{name}": values.copy() for tie in ties for name, values in tie.saved_arrays().items()}
+
+
+def cracks_of(ties: Sequence[JointTie]) -> Cracks:
+    """The places of all joints that lost their strength since the last call."""
+    return joined([tie.take_cracks() for tie in ties])
+
+
+def _empty_pairs(room: int) -> FacePairs:
+    """Places for pairs."""
+    whole, flags, values = np.int64, np.bool_, np.float64
+    kinds: Mapping[str, type] = {"first": whole, "second": whole, "intact": flags, "slides": flags}
+    shapes = {"arm": (room, 2)}
+    return FacePairs(*(np.zeros(shapes.get(name, room), kinds.get(name, values)) for name in FacePairs._fields))
+
+
+def _copied(bundle: JointFaces) -> JointFaces:
+    """A bundle whose history can change without that of another."""
+    pairs = FacePairs(*(each.copy() for each in bundle.pairs))
+    own = {name: getattr(bundle, name).copy() for name in ("counts", "listed", "now", "force", "lost", "events")}
+    return bundle._replace(pairs=pairs, **own)

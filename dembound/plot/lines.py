@@ -1,0 +1,87 @@
+"""Lines over the disks of a scene: between layers, and along walls and joints."""
+
+import math
+from collections.abc import Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from dembound.plot.disks import Window
+from dembound.plot.field import Disks
+from dembound.plot.lines_of_ground import LayersOfSide
+
+ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
+"""Drawing order of marks."""
+
+NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2
+"""Size of a monitor's name in points, with its background."""
+
+
+def mark_walls(panel: Axes, walls: Sequence[np.ndarray]) -> None:
+    """A line for every wall (p, 2) m."""
+    for number, line in enumerate(walls):
+        looks: dict[str, Any] = {"color": "black", "linewidth": 1.6, "zorder": ABOVE_DISKS, "scalex": False}
+        panel.plot(*line.T, label=None if number else "wall", scaley=False, **looks)
+
+
+def mark_faults(panel: Axes, disks: Disks) -> None:
+    """Lines along joints, visible on all colours."""
+    for points in disks.faults:
+        looks: dict[str, Any] = {"zorder": ABOVE_DISKS, "solid_capstyle": "round"}
+        panel.plot(*points.T, color="white", linewidth=2.2, scalex=False, scaley=False, **looks)
+        panel.plot(*points.T, color="black", linewidth=1.2, scalex=False, scaley=False, **looks)
+
+
+def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
+    """Thin lines at the joints of layers, and the names of layers where a window has room; inches per metre."""
+    bottom, top = window.extent[2:]
+    dashes: Sequence[dict[str, Any]] = {"color": "white"}, {"color": "black", "linestyle": (0, (6, 3))}
+    looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
+    plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+    left, right, aligned = _beside_layers(disks, *window.extent[:2])
+    for number, own in enumerate(disks.layers):
+        ends = np.clip((own.low, own.high), left, right).tolist()
+        for joint, way in product(own.joints, dashes):  # dashes of two colours, visible on all others
+            panel.plot(ends, (joint, joint), **way, **looks)
+        at = ("left", "right")[number] if len(disks.layers) > 1 else aligned
+        aside = 3.0 if at == "left" else -3.0
+        heights = np.clip([top, *own.joints, bottom], bottom, top)
+        for name, high, low in zip(own.names, heights[:-1], heights[1:], strict=True):
+            room = 72.0 * scale * np.array([ends[1] - ends[0], high - low])
+            if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
+                place: dict[str, Any] = {"xytext": (aside, -3.0), "textcoords": "offset points", "ha": at, "va": "top"}
+                panel.annotate(name, (ends[at == "right"], high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+    for way in dashes if len(disks.layers) > 1 else ():
+        panel.plot((disks.layers[0].high,) * 2, (_one_below(disks.layers), top), **way, **looks)
+
+
+def _one_below(sides: Sequence[LayersOfSide]) -> float:
+    """Height y (m) below which two sides have the same layers."""
+    left, right = sides
+    lowest = math.inf
+    for one, other, *ends in zip(
+        left.names[::-1], right.names[::-1], left.joints[::-1], right.joints[::-1], strict=False
+    ):
+        if one != other:
+            break
+        lowest = min(ends)
+        if ends[0] != ends[1]:
+            break
+    return lowest
+
+
+def _beside_layers(disks: Disks, left: float, right: float) -> tuple[float, float, str]:
+    """Ends (m) of a window without free-field columns; and at which of them layers are named.
+
+    At the right, or at the left where the ground is higher there: above lower ground their names would be in the air.
+    """
+    middle = 0.5 * (left + right)
+    for seam in disks.seams:
+        left, right = (max(left, seam), right) if seam < middle else (left, min(right, seam))
+    x, y = disks.positions[disks.column :].T
+    near = 0.1 * float(np.ptp(x))
+    highs = [y[side].max() for side in (x < x.min() + near, x > x.max() - near)]
+    is_higher = bool(highs[0] > highs[1] + 4.0 * float(disks.radii.max()))
+    return left, right, "left" if is_higher else "right"

@@ -1,0 +1,107 @@
+"""The faces of joints in a body: sides, contacts that they replace, ends, kinks, and springs of closed joints."""
+
+import numpy as np
+import pytest
+import tomli_w
+from small_cases import GRAINS
+
+from dembound.disks.faces.found import numbers_beside
+from dembound.disks.faces.springs import filling_springs
+from dembound.disks.scene import build
+from dembound.kinds import loads
+
+LATTICE = {
+    "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "run": {"duration": 0.01},
+}
+
+
+def scene_with(points, tables=None, **keys):
+    """A body with one joint along some points."""
+    joint = {"name": "joint", "points": points, "kn": 1e10, "ks": 1e10} | keys
+    return build(loads(tomli_w.dumps((tables or LATTICE) | {"joint": [joint]})))
+
+
+def test_a_joint_between_two_rows_has_every_disk_of_both():
+    scene = scene_with([[-1.0, 2.5], [11.0, 2.5]])
+    (faces,) = scene.faces
+    assert (faces.split, len(faces.disk), faces.cut) == (20, 40, 20)
+    np.testing.assert_allclose(faces.length, 10.0)
+    y = scene.positions[faces.disk, 1]
+    assert (y[: faces.split] == 2.75).all()
+    assert (y[faces.split :] == 2.25).all()
+    # k_n/D and k_s/D of the contacts, in series with what is asked for
+    springs = scene.ground.springs
+    removed = np.array([springs.normal[0], springs.shear[0]]) / 0.5
+    np.testing.assert_allclose(faces.removed, removed)
+    np.testing.assert_allclose(1.0 / faces.stiffness, 1e-10 + 1.0 / removed)
+    apart = scene.positions[scene.assembly.pairs]
+    assert not ((apart[:, 0, 1] - 2.5) * (apart[:, 1, 1] - 2.5) < 0.0).any()
+
+
+def test_a_joint_that_ends_inside_leaves_the_contacts_beyond():
+    faces = scene_with([[2.0, 2.5], [7.0, 2.5]]).faces[0]
+    assert faces.cut == 10
+    np.testing.assert_allclose(faces.length, 5.0)
+
+
+def test_both_sides_cover_the_line_in_random_ground():
+    scene = scene_with([[-1.0, 1.0], [9.0, 3.0]], GRAINS | {"boundary": {}, "wave": {}, "monitor": []})
+    (faces,) = scene.faces
+    whole = np.hypot(8.0, 1.6)
+    for own in (slice(0, faces.split), slice(faces.split, None)):
+        ends = np.sum((faces.ends[own] - [0.0, 1.2]) * faces.along[0], axis=-1)
+        assert (np.diff(ends[:, 0]) > 0.0).all()
+        np.testing.assert_allclose(ends[1:, 0], ends[:-1, 1], atol=1e-9)  # each begins where the one before ends
+        np.testing.assert_allclose(ends[-1, 1] - ends[0, 0], whole, rtol=0.08)  # disks end before the sides do
+    first, second = scene.assembly.pairs.T
+    assert (faces.side[first] * faces.side[second] >= 0).all()
+
+
+def test_disks_at_a_kink_have_a_face_on_each_segment():
+    faces = scene_with([[-1.0, 2.5], [5.1, 2.5], [11.0, 3.2]]).faces[0]
+    assert len(np.unique(faces.along, axis=0)) == 2
+    both = [len(own) - len(np.unique(own)) for own in np.split(faces.disk, [faces.split])]
+    assert both == [1, 1]
+    np.testing.assert_allclose(faces.length, 5.1 + np.hypot(4.9, 4.9 * 0.7 / 5.9), rtol=0.02)
+
+
+def test_springs_of_a_closed_joint_resist_opening_sliding_and_rolling():
+    scene = scene_with([[-1.0, 2.5], [11.0, 2.5]])
+    (faces,) = scene.faces
+    fill = filling_springs(scene.faces, scene.positions, scene.layout.slot)
+    upper = scene.positions[:, 1] > 2.5
+
+    def force_of(u):
+        force = np.zeros((3, scene.layout.count))
+        fill(scene.layout.spread(u), force)
+        return scene.layout.gather(force)
+
+    moved = np.zeros((3, scene.count))
+    moved[0, upper], moved[1, upper] = 2e-3, 1e-3
+    found = force_of(moved)
+    np.testing.assert_allclose(found[:2, upper].sum(axis=1), -10.0 * faces.stiffness[::-1] * [2e-3, 1e-3])
+    np.testing.assert_allclose(found[:2].sum(axis=1), 0.0, atol=1e-6)
+    # a body that turns as a whole is not strained
+    arm = scene.positions - [5.0, 2.5]
+    turned = 1e-3 * np.stack([-arm[:, 1], arm[:, 0], np.ones(scene.count)])
+    assert np.abs(force_of(turned)).max() < 1e-9 * faces.stiffness.max()
+
+
+@pytest.mark.parametrize("pattern", ["elastic", "linearpbond"])
+def test_disks_of_both_sides_never_meet(pattern):
+    tables = LATTICE | {"material": LATTICE["material"] | {"law": pattern, "fric": 0.5}}
+    if pattern == "elastic":
+        del tables["material"]["fric"]
+    scene = scene_with([[-1.0, 2.5], [11.0, 2.5]], tables, fric=0.5)
+    if pattern == "elastic":
+        assert numbers_beside(scene.faces)[scene.faces[0].disk].all()
+        return
+    pairs = scene.system(1e-4).contacts["body"]
+    moved = np.zeros((3, scene.count))
+    moved[:2, scene.positions[:, 1] > 2.5] = [[0.26], [-0.02]]  # into the rows below, were they to touch
+    pairs.search(moved)
+    first, second = pairs.pairs
+    sides = scene.faces[0].side
+    assert not ((sides[first] * sides[second]) < 0).any()
