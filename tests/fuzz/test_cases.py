@@ -227,7 +227,7 @@ def answered(data: Mapping[str, Any], folder: Path) -> bool:
     return True
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(3000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [100, pytest.param(3000, marks=pytest.mark.slow)])
 def test_a_changed_case_is_planned_or_answered_in_lines(count: int, sweep, tmp_path: Path) -> None:
     planned = []
 

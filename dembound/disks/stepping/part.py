@@ -161,7 +161,8 @@ class DiskPart(Part):
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
         rolls = self.contacts is not None and self.contacts.rolls and self.uses_history
-        limits = self.ground.law.without_limits(self.geometry, rolls=rolls)
+        law = self.ground.law  # of another package it need not know of rolling
+        limits = law.without_limits(self.geometry, rolls=True) if rolls else law.without_limits(self.geometry)
         in_contacts, in_bonds = strain_energy(u, self.pairs, limits)
         if self.arms is not None:
             in_bonds += arms_energy(self.pairs, limits, self.arms)
