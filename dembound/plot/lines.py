@@ -47,7 +47,8 @@ def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None
             panel.plot(ends, (joint, joint), **way, **looks)
         at = ("left", "right")[number] if len(disks.layers) > 1 else aligned
         aside = 3.0 if at == "left" else -3.0
-        heights = np.clip([top, *own.joints, bottom], bottom, top)
+        surface = max(min(top, _surface_at(disks, ends[at == "right"])), bottom)
+        heights = np.clip([surface, *own.joints, bottom], bottom, surface)
         for name, high, low in zip(own.names, heights[:-1], heights[1:], strict=True):
             room = 72.0 * scale * np.array([ends[1] - ends[0], high - low])
             if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
@@ -55,6 +56,13 @@ def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None
                 panel.annotate(name, (ends[at == "right"], high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
     for way in dashes if len(disks.layers) > 1 else ():
         panel.plot((disks.layers[0].high,) * 2, (_one_below(disks.layers), top), **way, **looks)
+
+
+def _surface_at(disks: Disks, place: float) -> float:
+    """Height y (m) of the body's highest disk within a tenth of its width from x = place, m."""
+    x, y = disks.positions[disks.column :].T
+    near = np.abs(x - place) < 0.1 * float(np.ptp(x))
+    return float((y + disks.radii[disks.column :])[near].max(initial=-np.inf))
 
 
 def _one_below(sides: Sequence[LayersOfSide]) -> float:
