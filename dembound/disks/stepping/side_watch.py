@@ -154,8 +154,9 @@ class SideWatch:
         numbers = {"ended": np.array(self.ended), "energy": np.array(self._energy)}
         return {"work": self._work, "turn": self._turn, "reached": self._reached, **numbers}
 
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+    def restore(self, saved: Arrays, sides: list[str]) -> None:
+        """Restore the arrays returned by `saved_arrays` in another run of the same case; sides : of its `Balance`."""
+        self._sides = sides
         self._work[:], self._turn[:], self._reached[:] = (saved[name] for name in ("work", "turn", "reached"))
         self.ended, self._energy = float(saved["ended"]), float(saved["energy"])
 

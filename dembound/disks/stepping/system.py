@@ -251,7 +251,8 @@ class DiskSystem(RecordedDisks):
         self.balance = Balance.restored(self.scene, kept) if kept else None
         if self.near_ties is not None:
             self.near_ties.restore(arrays_of_owner(saved, "near_ties"))
-        self.side_watch.restore(arrays_of_owner(saved, "side_watch"))
+        sides = [] if self.balance is None else self.balance.sides
+        self.side_watch.restore(arrays_of_owner(saved, "side_watch"), sides)
         self._set_balance_in_use()
         self._let_go()
         self._begin_at_rest()
