@@ -50,6 +50,43 @@ def _height_at(place, x0, y0, x1, y1):
 
 
 @njit(**FAST)
+def _stress(joint, k, gap, moved, length, place):
+    """Pressure and shear stress of pair k, slip of this step, whether it slides, and energy of strength it has lost.
+
+    gap : m, beyond what the faces are pressed in; moved : m, shear displacement; place : x, y (m) of the overlap.
+    """
+    law, pairs = joint.law, joint.pairs
+    push, rub = -law.kn * gap, -law.ks * (moved - pairs.slip[k])
+    slipped, slides, cracked = 0.0, False, 0.0
+    if law.fails and pairs.intact[k]:
+        torn = push < -law.tension
+        if torn or abs(rub) > law.cohesion + law.friction * max(push, 0.0):
+            pairs.intact[k] = False
+            cracked = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
+            _note_event(joint, k, torn, place[0], place[1])
+    if law.fails and not pairs.intact[k]:
+        push = max(push, 0.0)
+        bearing = pairs.bearing[k] + law.follows * (push + pairs.drag[k] - pairs.bearing[k])
+        pairs.bearing[k] = bearing if push > 0.0 else 0.0
+        most = law.friction * pairs.bearing[k]
+        if abs(rub) > most:
+            slides = push > 0.0
+            rub = np.copysign(most, rub)
+            slip = moved + rub / law.ks
+            slipped = slip - pairs.slip[k]
+            pairs.slip[k] = slip
+    return push, rub, slipped, slides, cracked
+
+
+@njit(**FAST)
+def _add(force, f, fx, fy, moment):
+    """Add a force (N) and a moment (N·m) to those on face f, force (m, 3)."""
+    force[f, U(0)] += fx
+    force[f, U(1)] += fy
+    force[f, U(2)] += moment
+
+
+@njit(**FAST)
 def _push_pair(joint, k, u, v):
     """Forces of pair k on the disks of its faces, added to joint.force, and what it has taken, to joint.lost."""
     law, pairs, lost, now = joint.law, joint.pairs, joint.lost, joint.now
@@ -84,32 +121,13 @@ def _push_pair(joint, k, u, v):
     before = pairs.length[k]
     if before <= 0.0:
         pairs.slip[k] = moved
-    push, rub = 0.0, 0.0
-    energy, cracked = 0.0, 0.0
-    slipped, slides = 0.0, False
+    push, rub, slipped, slides, cracked = 0.0, 0.0, 0.0, False, 0.0
     if length > 0.0:
         gap = _height_at(middle, 0.0, 0.0, b, height_b) - _height_at(middle, c, height_c, d, height_d)
-        push = -law.kn * (gap - joint.closure[f] - joint.closure[g])
-        rub = -law.ks * (moved - pairs.slip[k])
-        if law.fails:
-            if pairs.intact[k]:
-                torn = push < -law.tension
-                if torn or abs(rub) > law.cohesion + law.friction * max(push, 0.0):
-                    pairs.intact[k] = False
-                    cracked = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
-                    _note_event(joint, k, torn, ax + tx * middle, ay + ty * middle)
-            if not pairs.intact[k]:
-                push = max(push, 0.0)
-                bearing = pairs.bearing[k] + law.follows * (push + pairs.drag[k] - pairs.bearing[k])
-                pairs.bearing[k] = bearing if push > 0.0 else 0.0
-                most = law.friction * pairs.bearing[k]
-                if abs(rub) > most:
-                    slides = push > 0.0
-                    rub = np.copysign(most, rub)
-                    slip = moved + rub / law.ks
-                    slipped = slip - pairs.slip[k]
-                    pairs.slip[k] = slip
-        energy = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
+        gap -= joint.closure[f] + joint.closure[g]
+        place = ax + tx * middle, ay + ty * middle
+        push, rub, slipped, slides, cracked = _stress(joint, k, gap, moved, length, place)
+    energy = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
     # what the forces have taken from the disks since the step before, and is not stored
     half = 0.5 * law.step
     was_push, was_rub = before * pairs.pressure[k], before * pairs.shear[k]
@@ -123,19 +141,14 @@ def _push_pair(joint, k, u, v):
     lost[U(CRACK)] += broken
     lost[U(CLOSING)] += taken - rubbed - broken
     pairs.slides[k] = slides
-    pairs.moved[k], pairs.length[k], pairs.energy[k] = moved, length, energy
+    pairs.length[k], pairs.energy[k] = length, energy
     pairs.pressure[k], pairs.shear[k] = push, rub
     pairs.arm[k, 0], pairs.arm[k, 1] = arm_i, arm_j
     if length > 0.0:
         N, S = length * push, length * rub
         fx, fy = S * tx - N * ty, S * ty + N * tx
-        force = joint.force
-        force[f, U(0)] += fx
-        force[f, U(1)] += fy
-        force[f, U(2)] += N * arm_i + S * joint.height[f]
-        force[g, U(0)] -= fx
-        force[g, U(1)] -= fy
-        force[g, U(2)] += S * joint.height[g] - N * arm_j
+        _add(joint.force, f, fx, fy, N * arm_i + S * joint.height[f])
+        _add(joint.force, g, -fx, -fy, S * joint.height[g] - N * arm_j)
     else:
         pairs.intact[k] = False
 
@@ -159,7 +172,7 @@ def _copy(one, k, other, q):
     """Copy pair k of one list to place q of another."""
     other.first[q], other.second[q] = one.first[k], one.second[k]
     other.intact[q], other.slides[q] = one.intact[k], one.slides[k]
-    other.slip[q], other.moved[q], other.length[q] = one.slip[k], one.moved[k], one.length[k]
+    other.slip[q], other.length[q] = one.slip[k], one.length[k]
     other.pressure[q], other.shear[q], other.drag[q] = one.pressure[k], one.shear[k], one.drag[k]
     other.arm[q, 0], other.arm[q, 1] = one.arm[k, 0], one.arm[k, 1]
     other.energy[q], other.bearing[q] = one.energy[k], one.bearing[k]
@@ -170,7 +183,7 @@ def _begin_pair(pairs, q, f, g):
     """Make pair q one of faces f and g without overlap."""
     pairs.first[q], pairs.second[q] = f, g
     pairs.intact[q], pairs.slides[q] = False, False
-    pairs.slip[q], pairs.moved[q], pairs.length[q] = 0.0, 0.0, 0.0
+    pairs.slip[q], pairs.length[q] = 0.0, 0.0
     pairs.pressure[q], pairs.shear[q], pairs.drag[q] = 0.0, 0.0, 0.0
     pairs.arm[q, 0], pairs.arm[q, 1] = 0.0, 0.0
     pairs.energy[q], pairs.bearing[q] = 0.0, 0.0

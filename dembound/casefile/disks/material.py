@@ -230,7 +230,7 @@ class MaterialTable(Table):
         return self
 
     def valued(self, keys: Sequence[str]) -> list[str]:
-        """Those of some keys that have values."""
+        """The keys that have a value, of those asked for, in their order."""
         return [key for key in keys if getattr(self, key) is not None]
 
     @property

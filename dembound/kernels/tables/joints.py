@@ -30,9 +30,9 @@ class FacePairs(NamedTuple):
     """Pairs of faces that overlap or may soon, p places of which the first are in use; sorted by first, then second.
 
     first, second : (p,) faces. intact : (p,) bool, whether the joint has its strength there; slides : (p,) bool, in the
-    last step. slip : (p,) m, shear displacement without stress; moved : (p,) m, shear displacement. length : (p,) m,
-    overlap in the last step; pressure, shear, drag : (p,) Pa, its normal stress, positive if it pushes, its shear
-    stress on the first face along its line, and the normal stress of the dashpot; bearing : (p,) Pa, the pressure that
+    last step. slip : (p,) m, shear displacement without stress. length : (p,) m, overlap in the last step; pressure,
+    shear, drag : (p,) Pa, its normal stress, positive if it pushes, its shear stress on the first face along its line,
+    and the normal stress of the dashpot; bearing : (p,) Pa, the pressure that
     friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the line.
     energy : (p,) J.
     """
@@ -42,7 +42,6 @@ class FacePairs(NamedTuple):
     intact: np.ndarray
     slides: np.ndarray
     slip: np.ndarray
-    moved: np.ndarray
     length: np.ndarray
     pressure: np.ndarray
     shear: np.ndarray
