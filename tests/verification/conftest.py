@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 import tomli_w
@@ -205,6 +206,16 @@ class Lab:
         step = step or choose_step(scene)[0]
         rest = {} if start is None else {"system": DiskSystem(scene, step, start), "datum": start.displacement}
         return Simulation(scene, step, probes, side_stride=side_stride, **rest)
+
+    def advanced(self, simulation: Simulation, steps: int, threads: int) -> Simulation:
+        """A run after so many more steps, computed by so many threads."""
+        before = numba.get_num_threads()
+        try:
+            numba.set_num_threads(threads)
+            simulation.advance(steps)
+        finally:
+            numba.set_num_threads(before)
+        return simulation
 
     def ledger(self, simulation: Simulation, stride: int) -> Ledger:
         """The energy ledger of a simulation, with an entry every so many steps."""

@@ -1,6 +1,5 @@
 """Bonds with strengths of their own break at these, whatever computes them and in whatever order."""
 
-import numba
 import numpy as np
 import pytest
 
@@ -22,14 +21,7 @@ SIDES = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
 def run(lab, size: tuple[float, float] = (40.0, 4.0), steps: int = STEPS, number: int = 1, **material) -> Simulation:
     """A run of grains that pulses break, with so many threads."""
     words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01), "brick": (4.0, 4.0)}
-    simulation = lab.simulation(lab.scene("B", size, **words, material=BRITTLE | material))
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(number)
-        simulation.advance(steps)
-    finally:
-        numba.set_num_threads(before)
-    return simulation
+    return lab.advanced(lab.simulation(lab.scene("B", size, **words, material=BRITTLE | material)), steps, number)
 
 
 def shares_of_strength(simulation: Simulation, u: np.ndarray) -> np.ndarray:

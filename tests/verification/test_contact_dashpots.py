@@ -1,6 +1,5 @@
 """Dashpots of contacts: rebound, the step that they allow, what they take, and that debris comes to rest by them."""
 
-import numba
 import numpy as np
 import pytest
 
@@ -97,14 +96,9 @@ def test_steps_are_stable_up_to_that_of_stiffness_and_dashpots(lab, ratio, expec
 def run(lab, size: tuple[float, float], steps: int, number: int = 1, **material) -> Simulation:
     """A run of grains that pulses break, with so many threads."""
     words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01) | {"amplitude": 2.0}, "brick": (4.0, 4.0)}
-    simulation = lab.simulation(lab.scene("B", size, **words, material=BRITTLE | RATIOS | material))
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(number)
-        simulation.advance(steps)
-    finally:
-        numba.set_num_threads(before)
-    return simulation
+    return lab.advanced(
+        lab.simulation(lab.scene("B", size, **words, material=BRITTLE | RATIOS | material)), steps, number
+    )
 
 
 @pytest.mark.parametrize("geometry", ["updated", "reference"])

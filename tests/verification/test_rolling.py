@@ -1,6 +1,5 @@
 """Contacts that resist rolling: what rests on a slope, how fast it rolls, what that takes, and the step it allows."""
 
-import numba
 import numpy as np
 import pytest
 
@@ -79,14 +78,7 @@ def test_a_disk_rests_below_the_slope_of_its_rolling_resistance_and_rolls_as_in_
 def broken(lab, size: tuple[float, float], steps: int, number: int = 1, **material) -> Simulation:
     """A run of grains that pulses break, with so many threads."""
     words = {"held": (), "boundary": SIDES, "wave": lab.pulse(0.01) | {"amplitude": 2.0}, "brick": (4.0, 4.0)}
-    simulation = lab.simulation(lab.scene("B", size, **words, material=BRITTLE | material))
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(number)
-        simulation.advance(steps)
-    finally:
-        numba.set_num_threads(before)
-    return simulation
+    return lab.advanced(lab.simulation(lab.scene("B", size, **words, material=BRITTLE | material)), steps, number)
 
 
 @pytest.mark.parametrize("size", [(40.0, 4.0), (8.0, 4.0)], ids=["rows of copies", "one by one"])
