@@ -1,7 +1,6 @@
 """The command line: its files, messages and exit codes."""
 
 import csv
-import inspect
 import json
 import re
 import runpy
@@ -17,7 +16,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
-from rich.text import Text
 from small_cases import small
 
 from dembound import cli, starting
@@ -101,20 +99,6 @@ for number, words in enumerate({[words for words, _ in steps]}):
         found = set((tmp_path / str(number)).read_text().split())
         assert "dembound.cli.app" in found
         assert not found & not_yet, words
-
-
-def test_helps_wrap_at_80_columns_and_have_no_markup(dembound, command, monkeypatch) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    for name, each in command.commands.items():
-        told = dembound(name, "--help").out
-        # no type or list of choices is cut
-        assert not re.findall(r"<[^>\n]*\n", told)
-        # line breaks of all but a first paragraph would stay
-        assert not [text for text in inspect.cleandoc(each.help).split("\n\n")[1:] if "\n" in text]
-        # such as "[reduce]", which would not be shown
-        for words in [each.help, *(getattr(parameter, "help", None) for parameter in each.params)]:
-            assert Text.from_markup(words or "").plain == (words or ""), name
-    assert not [text for text in command.epilog.split("\n\n") if "\n" in text]
 
 
 def test_a_new_case_is_of_the_kind_that_its_name_says(dembound, tmp_path) -> None:

@@ -1,6 +1,5 @@
 """The memory of a machine is read as its system reports it, within the limits of containers."""
 
-import errno
 import os
 import signal
 import subprocess
@@ -13,9 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from dembound import machine
 from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, end_while_loading, look, put_off
-from dembound.machine import Memory, memory_here, memory_ran_out, private_folder
+from dembound.machine import Memory, memory_here, private_folder
 
 GIB = 2.0**30
 
@@ -56,15 +54,6 @@ def test_the_group_of_a_process_or_one_around_it_limits_its_memory(root) -> None
 
     # pages of files that nobody uses are dropped when others need them: 4 − 2 + 0.5
     assert memory_here(root(**files)) == Memory(4.0 * GIB, 2.5 * GIB)
-
-
-def test_the_first_version_of_the_interface(root) -> None:
-    at = "sys/fs/cgroup/memory/box"
-    files = {"proc/self/cgroup": "9:name=systemd:/\n4:memory:/box\n1:cpu:/other\n"}
-    files |= {f"{at}/memory.limit_in_bytes": f"{3 * 2**30}", f"{at}/memory.usage_in_bytes": f"{2**30}"}
-    files |= {f"{at}/memory.stat": f"inactive_file 5\ntotal_inactive_file {2**29}\n"}
-
-    assert memory_here(root(**files)) == Memory(3.0 * GIB, 2.5 * GIB)
 
 
 RELEASED = """
@@ -109,17 +98,6 @@ def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, m
     monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)  # a folder of another user
     (tmp_path / f"dembound-{os.getuid()}").mkdir(0o700)
     assert make().name not in {own.name, f"dembound-{os.getuid()}"}
-
-
-def test_a_library_that_cannot_be_loaded_is_missing_memory_only_within_a_limit(monkeypatch) -> None:
-    unloaded = ImportError("failed to map segment"), OSError("Could not find/load shared object file"), SystemError()
-    for limit, expected in ((None, False), (7e8, True)):
-        monkeypatch.setattr(machine, "address_limit", lambda limit=limit: limit)
-        assert [memory_ran_out(error) for error in unloaded] == [expected] * 3
-        others = ModuleNotFoundError("no module"), OSError(errno.ENOSPC, "full"), ValueError()
-        assert not any(memory_ran_out(error) for error in others)
-        assert memory_ran_out(MemoryError())
-        assert memory_ran_out(OSError(errno.ENOMEM, "Cannot allocate memory"))
 
 
 @pytest.fixture(autouse=True)
@@ -169,22 +147,6 @@ def test_a_second_signal_acts_at_once_unless_it_is_the_same_request() -> None:
         work()
     assert type(stop.value) is KeyboardInterrupt
     assert done == [signal.SIGINT]
-
-
-def test_requests_to_an_outer_statement_are_seen_within() -> None:
-    def work(number: int) -> None:
-        with Interrupts(), Interrupts() as inner:
-            send(number)
-            assert inner.caught == number
-            look()
-            pytest.fail("must not be reached")
-
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        before = signal.signal(number, signal.default_int_handler)  # tests may be run where hangups are ignored
-        with pytest.raises(Stopped) as stop:
-            work(number)
-        assert stop.value.exit_code == 128 + number
-        signal.signal(number, before)
 
 
 def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.table import WHAT, WIDTH, lines_of, next_step
+from dembound.accuracy.table import WHAT, lines_of, next_step
 from dembound.formulas.cause import SIDES, Cause, Causes
 from dembound.formulas.history import History
 
@@ -107,18 +107,6 @@ def test_bounds_and_what_is_unknown_are_marked():
     found = lines_of(budget_of([("sides", "why not", float("nan"), "unknown", False), bound], ["a"]))
     assert found[1:4] == ["monitor      law  whole  at most", "a        <= 30 %      ?        ?", "law: by a bound"]
     assert "not estimated: sides, why not" in found
-
-
-def test_lines_fit_a_terminal_and_monitors_that_do_not_are_counted():
-    names = [f"monitor_{k}" for k in range(12)]
-    found = lines_of(budget_of([("sides", "a sentence " * 20, 0.02, "companion", False)], names))
-    assert max(map(len, found)) <= WIDTH
-    assert "and 2 more monitors, at most 2.8 %" in found
-    assert lines_of(Budget({}, Causes([], ["has no monitor"]))) == ["not estimated: has no monitor"]
-    small = [(f"cause number {k}", "words", 1e-5, "formula", k > 5) for k in range(9)]
-    found = lines_of(budget_of([("sides", "words", 0.02, "companion", False), *small]))
-    assert max(map(len, found)) <= WIDTH
-    assert any(line.startswith("< 0.1 % at all monitors: cause number 0, cause number 1") for line in found)
 
 
 def test_what_to_do_next_names_the_largest_cause_where_the_error_is_large():

@@ -5,15 +5,14 @@ from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from dembound.boundaries import Boundary
 from dembound.boundaries.boundary import Driven
-from dembound.boundaries.viscous import Dashpots, Viscous
+from dembound.boundaries.viscous import Dashpots
 from dembound.holes import Hole
 from dembound.laws import Elastic, Law, Moduli, Springs
 from dembound.laws.law import Key
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds
-from dembound.packings import Packing, RandomBrick
+from dembound.packings import Packing
 from dembound.packings.brick import Brick
 from dembound.pairwise import PLACE, Column, index, is_pair_law, magnitude
 from dembound.table import quantity
@@ -37,17 +36,6 @@ class Brittle(Linear):
     name: ClassVar[str] = "brittle"
     has_history: ClassVar[bool] = True
     linear = "linear"
-
-
-class Graded(Linear):
-    """Stiffer between larger disks."""
-
-    name: ClassVar[str] = "graded"
-
-    def springs(self, moduli, radius_i, radius_j):
-        """The stiffnesses of the law without moments, with bonds in proportion to the radius."""
-        springs = super().springs(moduli, radius_i, radius_j)
-        return replace(springs, bond_normal=springs.bond_normal * radius_i, bond_shear=springs.bond_shear * radius_i)
 
 
 class Point(NamedTuple):
@@ -193,65 +181,6 @@ class OtherInput(Dashpots, Driven):
                 supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
 
 
-class Mattress(Dashpots):
-    """Absorbs, and holds every disk by a spring of the same stiffness, whatever its size."""
-
-    type: Literal["mattress"]
-    stiffness: float = quantity(..., unit="N/m", help="of the spring of a disk", gt=0.0)
-
-    def support(self, edge, medium, waves, supports):
-        """Dashpots and springs."""
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            supports.add(edge.nodes, component, damping=damping, stiffness=self.stiffness)
-
-    def dashpots_alone(self):
-        """The side without the springs."""
-        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
-
-
-class Quilt(Mattress):
-    """A mattress that defines its stiffness on disks of another size."""
-
-    type: Literal["quilt"]
-
-    def equal_supports(self, own, other):
-        """The side with equal stiffness per length."""
-        per_length = [len(edge.nodes) / edge.length for edge, _ in (own, other)]
-        return self.model_copy(update={"stiffness": self.stiffness * per_length[1] / per_length[0]})
-
-
-class Heather(Mattress):
-    """A mattress that is stiffer towards its end."""
-
-    type: Literal["heather"]
-
-    def support(self, edge, medium, waves, supports):
-        """Dashpots and springs."""
-        rising = self.stiffness * np.linspace(0.5, 1.5, len(edge.nodes))
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            supports.add(edge.nodes, component, damping=damping, stiffness=rising)
-
-
-class Shock(Boundary):
-    """A damper of the same coefficient on every disk, whatever its size, without a factor."""
-
-    type: Literal["shock"]
-    is_artificial: ClassVar[bool] = True
-    damper: float = quantity(..., unit="N·s/m", help="of a disk", gt=0.0)
-
-    def support(self, edge, medium, waves, supports):
-        """One damper per disk and direction."""
-        for component in range(2):
-            supports.add(edge.nodes, component, damping=self.damper)
-
-
-class Pads(Shock):
-    """A side like `Shock` whose dampers are part of the structure: it does not represent ground."""
-
-    type: Literal["pads"]
-    is_artificial: ClassVar[bool] = False
-
-
 class Hexagonal(Packing):
     """Equal disks that touch six neighbours without force; two in a brick."""
 
@@ -278,35 +207,6 @@ class Hexagonal(Packing):
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
-
-
-class Unsaid(Hexagonal):
-    """A packing like `Hexagonal` without optional properties."""
-
-    is_lattice: ClassVar[bool] = False
-
-    pattern: Literal["unsaid"]
-
-
-class Drawn(Packing):
-    """A random packing whose seed has another name."""
-
-    pattern: Literal["drawn"]
-    draw: int = quantity(1, unit="1", help="number of the draw", ge=1)
-
-    @property
-    def brick_size(self):
-        """Ten diameters of both."""
-        return 20.0 * self.radius, 20.0 * self.radius
-
-    def pack(self, contact_modulus):
-        """The brick of pattern B."""
-        own = RandomBrick(radius=self.radius, radius_ratio=1.5, brick=self.brick_size, bricks=(1, 1), seed=self.draw)
-        return own.pack(contact_modulus)
-
-    def reseeded(self, by):
-        """Another draw."""
-        return self.model_copy(update={"draw": self.draw + by})
 
 
 class Gauss(Shape):

@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, LONGEST, OF_WAVES, SHORT
-
 HERE = Path(__file__).parent
 REGISTERED = {
-    "laws": ["Linear", "Namesake", "Brittle", "Tips", "Rubber", "Forgetful", "Graded"],
+    "laws": ["Linear", "Namesake", "Brittle", "Tips", "Rubber", "Forgetful"],
     "methods": ["Cone"],
-    "boundaries": ["OtherInput", "LateInput", "Mattress", "Quilt", "Heather", "Shock", "Pads"],
-    "packings": ["Hexagonal", "Unsaid", "Drawn"],
+    "boundaries": ["OtherInput", "LateInput"],
+    "packings": ["Hexagonal"],
     "waves": ["Gauss", "Nameless"],
     "holes": ["Diamond", "Absent", "Stranger"],
 }
@@ -145,93 +143,6 @@ def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:
     assert found["late"].endswith('"late_input" transmits its waves late or not at all')
 
 
-def test_a_side_with_springs_of_its_own_is_estimated_as_one_of_this_package(found) -> None:
-    """Dashpots and springs as of "viscoelastic": the same factor, companions as stiff per length, the same errors."""
-    quilt, known = found["sides"]["quilt"], found["sides"]["viscoelastic"]
-    assert found["calibrated"]["quilt"] == found["calibrated"]["viscoelastic"]
-    np.testing.assert_allclose(found["held"]["quilt"][1], found["held"]["quilt"][0], rtol=1e-12)
-    assert quilt["unknown"] == known["unknown"] == []
-    of_disks = {f"{name}{kinks}" for name in ("grid", "time step") for kinks in ("", " at kinks")}
-    assert quilt["causes"].keys() == known["causes"].keys() == of_disks | {"left side", "places", "sides"}
-    for cause, errors in known["causes"].items():
-        assert quilt["causes"][cause]["middle"] == pytest.approx(errors["middle"], rel=1e-9), cause
-
-
-def test_coefficients_per_disk_are_those_per_metre_on_other_disks(found) -> None:
-    """As those of a type with methods for larger disks."""
-    np.testing.assert_allclose(found["held"]["mattress"][1], found["held"]["mattress"][0], rtol=1e-12)
-    assert found["calibrated"]["mattress"] == found["calibrated"]["viscoelastic"]
-
-
-def test_springs_that_differ_along_a_side_are_refused(found) -> None:
-    said = (
-        'boundary.right.type: "heather" has springs, which are not known for disks of another size; a type with '
-        "springs other than in proportion to edge.widths needs the method equal_supports()"
-    )
-    assert found["held"]["heather"] == [[said]]
-
-
-def test_dampers_without_factors_have_half_cells_on_larger_disks(found) -> None:
-    """ρc_s D on each disk is what "viscous" has with β_S = 1: the same companion, and the same part of whole cells."""
-    (damping, table, weight), (known, viscous, of_viscous) = found["shock"], found["like shock"]
-    assert table["half_mass"]
-    assert viscous["half_mass"]
-    assert damping[1] == pytest.approx(known[1], rel=1e-9)
-    assert weight == pytest.approx(of_viscous, rel=1e-9)
-    assert 0.1 < weight < 0.5  # cells a third as large
-
-
-def test_what_acts_on_single_disks_is_refused_where_it_is_not_known_on_larger_ones(found) -> None:
-    said = 'boundary.right.type: "pads" has dampers, which are not known for disks of another size; a type with dampers'
-    (line,) = found["pads"]
-    assert line.startswith(said)
-
-
-def test_the_sides_of_another_lattice_are_estimated_from_square_companions(found) -> None:
-    """Within 15 % of what a run with far sides gives, at the uneven edge 20 %; on a square lattice 2 to 5 %.
-
-    Companions under the material of the case, whose square lattice is softer, would be off by 19 to 33 %.
-    """
-    sides = found["hexagonal"]["causes"]["sides"]
-    for monitor, added in found["far sides"].items():
-        assert sides[monitor] == pytest.approx(added, rel=0.2 if monitor == "right" else 0.15), monitor
-    # rows along the top, every second disk along the right side
-    uneven = "edge: how single disks at an uneven edge move otherwise than those around, at right"
-    assert found["hexagonal"]["unknown"] == [uneven]
-
-
-def test_a_lattice_only_stands_for_the_ground_and_other_packings_are_the_ground(found) -> None:
-    (may_change, radius), (may_not, _), (_, graded) = found["larger"]
-    assert may_change
-    assert radius == 0.125
-    assert graded is None  # under a law by which smaller disks make a softer ground
-    assert not may_not
-
-
-def test_walls_in_a_lattice_without_planes_between_disks_are_half_a_disk_off(found) -> None:
-    """One disk along the smaller half of a rectangle: 0.2 by its corners, half of half a disk of one; random: 0.75.
-
-    A hole of another shape is as a round one of two disks, on the mean of all directions. The waves are short.
-    """
-    assert found["walls"] == pytest.approx(
-        [BETWEEN * np.hypot(0.2, 0.25), OF_WAVES * LONGEST * 0.75, SHORT * (LIT + 0.5 * (DARK + CREEP * SHORT)) / 2.0]
-    )
-
-
-def test_only_rows_and_columns_of_disks_keep_waves_plane_between_free_sides(found) -> None:
-    assert found["plane"] == [True, False]
-
-
-def test_a_random_packing_has_the_draws_of_one_of_this_package(found) -> None:
-    draw, seed = found["drawn"]
-    assert draw["share"] == seed["share"] > 0.0
-    assert draw["words"] == seed["words"] == "from runs with 2 seeds: how each differs from their mean"
-
-
-def test_sizes_of_disks_are_charted_by_their_meaning(found) -> None:
-    assert found["charted"] == [{}, {"packing.radius": 0.5}]
-
-
 def test_a_law_that_breaks_is_its_own_linear_law_where_nothing_breaks(found) -> None:
     assert found["twin"] == "linear"
     assert found["shortened"][-1] == "the linear law"
@@ -245,16 +156,3 @@ def test_a_law_that_is_not_linear_is_refused_where_that_is_assumed(found) -> Non
     assert rubber["estimate"] == rubber["advise"] == unknown
     (line,) = found["rubber"]["library"]
     assert line.startswith('material.law: is "rubber", which is not linear; a library adds up motion, so "')
-
-
-def test_mirrors_of_lattices_without_neighbours_straight_across_are_warned_of(found) -> None:
-    """Random packings are mirrored disk by disk."""
-    (line,), of_random = found["mirrors"]
-    assert of_random == []
-    assert line.startswith("boundary.bottom: the disks of pattern hexagonal have no neighbours straight across this ")
-
-
-def test_sides_are_described_with_their_own_numbers(found) -> None:
-    shock, mattress = found["described"]
-    assert shock == "shock, damper = 500000"
-    assert mattress.endswith(", stiffness = 2.5e+07")

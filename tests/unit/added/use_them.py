@@ -1,4 +1,4 @@
-"""Cases of the added types, in a process that has found them installed: runs, calibrations, estimates and choices.
+"""Cases of the added types, in a process that has found them installed: runs and calibrations.
 
 Prints what comes out as JSON.
 """
@@ -7,7 +7,6 @@ import json
 import sys
 import warnings
 from dataclasses import replace
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -19,27 +18,18 @@ with warnings.catch_warnings(record=True) as said:
     import dembound.kinds as kinds
 
 from dembound.accuracy.estimate import advise, causes_of
-from dembound.accuracy.judge import extended
-from dembound.accuracy.of_disks.candidates import disk_choices
 from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.exact.references import ExactPlaneWave
 from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.of_disks.options import Options
-from dembound.accuracy.runner import Runner, at_step
-from dembound.boundaries.description import side_in_words
+from dembound.accuracy.runner import Runner
 from dembound.casefile.types import BOUNDARIES
 from dembound.disks.matching import Held
 from dembound.disks.reflection import measure_side
 from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError, RunError
-from dembound.formulas.cause import share_of
-from dembound.formulas.disks.near_disks import wall_errors
 from dembound.formulas.history import History
 from dembound.kinds.bar.summary import cells_of_waves
-from dembound.kinds.disks.side_warnings import side_warnings
-from dembound.kinds.disks.summary import describe_side
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
@@ -70,29 +60,7 @@ TWO = {
 }
 PERIODIC = {"type": "periodic"}
 STRIP = {"boundary.bottom": PERIODIC, "boundary.top": PERIODIC, "motion.held": ["x"]}
-ROCK = {"material.law": "elastic", "material.kratio": 2.0}
-ROUND = {side: {"type": "viscous"} for side in ("left", "right", "bottom", "top")}
-HEXAGONS = ROCK | {
-    "packing.pattern": "hexagonal",
-    "packing.size": [10.0, 10.392305],
-    "boundary": ROUND,
-    "load": [{"name": "push", "force": [1e6, 3e5], "region": [4.5, 4.5, 5.5, 5.5], "wave": "bell"}],
-    "monitor": [
-        {"name": "beside", "position": [7.6, 5.2]},
-        {"name": "above", "position": [3.1, 7.0]},
-        {"name": "right", "position": [9.9, 5.2]},
-        {"name": "top", "position": [5.0, 10.3]},
-    ],
-    "run.duration": 0.05,
-}
-DRAWN = ROCK | {
-    "packing": {"pattern": "drawn", "radius": 0.25, "size": [10.0, 5.0]},
-    "monitor": [{"name": "middle", "position": [5.0, 2.5]}],
-}
-B = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0], "seed": 1, "size": [10.0, 5.0]}
-SHAFT = {"type": "diamond", "name": "shaft", "centre": [2.0, 2.0], "half": 1.0}
-DIAMOND = SHAFT | {"centre": [12.0, 2.5], "half": 1.2}
-CAVE = {"type": "rectangle", "name": "cave", "corners": [1.0, 1.0, 2.0, 2.2]}
+DIAMOND = {"type": "diamond", "name": "shaft", "centre": [12.0, 2.5], "half": 1.2}
 
 
 def case(tables: dict[str, Any] = GROUND, **changes: object) -> Any:
@@ -170,30 +138,6 @@ def run(made: Any) -> tuple[dict[str, History], int]:
     return motions, done.work
 
 
-def estimated(made: Any) -> dict[str, Any]:
-    """Causes of a run's errors of velocities at its monitors, and notes; or the reason why there are none."""
-    try:
-        motions, work = run(made)
-        found = causes_of(made, motions, plan(made).time_step, work)
-    except CaseError as error:
-        return {"refused": list(error.problems)}
-    own = found.motions or motions
-    shares = {
-        cause.name: {name: cause.share(name, "velocity", each) for name, each in own.items()} for cause in found.found
-    }
-    known = {name: each for name, each in shares.items() if name not in [cause.name for cause in found.unknown]}
-    return {"causes": known, "unknown": [f"{cause.name}: {cause.words}" for cause in found.unknown]}
-
-
-def of_far_sides(made: Any) -> dict[str, float]:
-    """Errors of the velocity of monitors by the sides of a case, from a run with all of them out of reach."""
-    step = plan(made).time_step
-    (own, _), (far, _) = (run(at_step(each, step)) for each in (made, extended(made).case))
-    there = {name: far[name].at(each.time) for name, each in own.items()}
-    added = {name: own[name].values["velocity"] - there[name].values["velocity"] for name in own}
-    return {name: share_of(added[name], "velocity", there[name]) for name in own}
-
-
 def held(made: Any) -> list[list[float]]:
     """Springs per metre of the right side, for a case and for disks three times as large; or an error message."""
     scene = build(made)
@@ -204,26 +148,6 @@ def held(made: Any) -> list[list[float]]:
     return [Held.of(each, "right").stiffness.tolist() for each in (scene, larger)]
 
 
-def companion(**changes: object) -> list[Any]:
-    """Dashpots per metre of the right side of a strip with disks three times as large, and its table.
-
-    Or an error message. Also the part of what whole cells add, see `coarser.Coarser`.
-    """
-    made = case(**STRIP, **changes)
-    try:
-        found = coarser(made, build(made), plan(made).time_step, 1.5)
-    except CaseError as error:
-        return list(error.problems)
-    return [Held.of(build(found.case), "right").damping.tolist(), found.case.boundary["right"].given(), found.weight]
-
-
-def other_draw(made: Any) -> dict[str, Any]:
-    """Source and share of the scatter between packings."""
-    motions, _ = run(made)
-    (cause,) = cause_of_packing(made, motions, 2).found
-    return {"words": cause.words, "share": cause.share("middle", "velocity", motions["middle"])}
-
-
 def larger(made: Any) -> list[Any]:
     """Whether disks only discretise the ground, and the radius of disks half as large that make the same one."""
     options = Options(plan(made), 0.01, ())
@@ -231,29 +155,8 @@ def larger(made: Any) -> list[Any]:
     return [0.5 in options.factors, found[0].case.packing.radius if found else None]
 
 
-springs = {"stiffness": 0.5 * 1e9 / 10.0 * 0.5}  # those of α = ½, E = 2 GPa, ν = 0 and L = 10 m on disks of 0.5 m
-viscoelastic = {"type": "viscoelastic", "young_modulus": 2e9, "distance": 10.0, "alpha_n": 0.5, "alpha_s": 0.5}
-sides = {
-    "viscoelastic": viscoelastic,
-    "quilt": {"type": "quilt", **springs},
-    "mattress": {"type": "mattress", **springs},
-}
-late = {"monitor.middle.position": [17.25, 1.25], "run.duration": 0.07}  # after the wave has come back
-uneven = late | {"boundary.right": {"type": "heather", **springs}}
-one = {"damper": 0.5 * 2500.0 * build(case(**STRIP)).ground.wave_speeds(0)[1]}  # ρc_s D
-of_sides = {name: case(**STRIP, **late, **{"boundary.right": table}) for name, table in sides.items()}
-hexagons, unsaid = case(**HEXAGONS), case(**HEXAGONS | {"packing.pattern": "unsaid"})
-drawn, b = case(**DRAWN), case(**DRAWN | {"packing": B})
 strong = {"law": "brittle", "contact_share": 0.0, "pb_ten": 1e9, "pb_coh": 1e9}  # bonds alone, which hold
 brittle = case(**STRIP, **{f"material.{key}": value for key, value in strong.items()})
-
-
-free = {
-    "motion.held": ["y"],
-    "boundary": {"left": {"type": "velocity", "wave_p": "bell"}, "right": {"type": "viscous"}},
-}
-rows = case(**free), case(**free, **ROCK | {"packing.pattern": "hexagonal", "packing.size": [20.0, 2.598076]})
-wide = {"pattern": "drawn", "radius": 0.25, "size": [20.0, 10.0]}
 
 
 def twin_of(made: Any) -> str | None:
@@ -274,11 +177,6 @@ def refusals(made: Any) -> dict[str, list[str]]:
         "estimate": refused(lambda: causes_of(made, still, 1e-4, 1.0)),
         "advise": refused(lambda: advise(made, (0.01,))),
     }
-
-
-def with_short_waves(made: Any, hole: dict[str, Any]) -> Any:
-    """A case with a hole and waves much shorter than that."""
-    return kinds.with_changes(made, {"hole": [hole], "wave.bell.width": 1e-4})
 
 
 strip = case(**STRIP, **{"boundary.left.beta_s": 0.9})
@@ -309,33 +207,9 @@ json.dump(
         "usual": replace(lattices[0], shares=None).frequency(wavenumbers).tolist(),
         "limit": [rod.step_limit(), lattices[0].courant_limit * lattices[0].spacing / 2000.0],
         "cells": cells_of_waves(rod, 1e-7)["bell"][1],
-        "held": {name: held(of_sides[name]) for name in sides} | {"heather": held(case(**STRIP, **uneven))},
-        "sides": {name: estimated(of_sides[name]) for name in ("quilt", "viscoelastic")},
-        "calibrated": {name: calibrate(of_sides[name], "right").result for name in sides},
-        "shock": companion(**{"boundary.right": {"type": "shock", **one}}),
-        "like shock": companion(**{"boundary.right": {"type": "viscous", "beta_s": 1.0}}),
-        "pads": companion(**{"boundary.right": {"type": "pads", **one}}),
         "twin": twin_of(brittle),
         "shortened": calibrate(brittle, "right").shortened,
-        "hexagonal": estimated(hexagons),
-        "far sides": of_far_sides(hexagons),
-        "larger": [larger(each) for each in (hexagons, unsaid, case(**STRIP, **{"material.law": "graded"}))],
-        "walls": [
-            wall_errors(with_short_waves(made, hole), build(made).ground, 0.5)["velocity"]
-            for made, hole in ((hexagons, CAVE), (unsaid, CAVE), (hexagons, SHAFT))
-        ],
-        "plane": [ExactPlaneWave.of(each) is not None for each in rows],
-        "described": [
-            side_in_words(describe_side(build(case(**STRIP, **{"boundary.right": table})), "right"))
-            for table in ({"type": "shock", "damper": 5e5}, sides["mattress"])
-        ],
-        "mirrors": [
-            list(side_warnings(build(kinds.with_changes(made, {"boundary.bottom": {"type": "symmetry"}}))))
-            for made in (hexagons, unsaid)
-        ],
         "rubber": refusals(case(**STRIP, **{"material.law": "rubber"})),
-        "drawn": [other_draw(each) for each in (drawn, b)],
-        "charted": [changes for _, changes in islice(disk_choices(case(**DRAWN | {"packing": wide})), 2)],
     },
     sys.stdout,
     default=lambda value: value.tolist() if isinstance(value, np.ndarray | np.generic) else str(value),

@@ -6,9 +6,6 @@ import signal
 import subprocess
 import sys
 
-import h5py
-import pytest
-
 from dembound.running import job
 
 IMPORTED = """
@@ -92,38 +89,6 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
     assert record.read_bytes() == before
 
     assert dembound("rerun", "results/bar", "--name", "half", *change).code == 0
-
-
-def test_a_record_of_an_earlier_version_or_without_a_case_and_a_broken_summary_are_one_line(dembound, written) -> None:
-    dembound("run", written())
-
-    with open("results/bar/summary.json", "w") as file:
-        file.write("{")
-    answer = dembound("estimate", "results/bar")
-    assert (answer.code, answer.err) == (5, "results/bar/summary.json: is damaged, no JSON\n")
-    with h5py.File("results/bar/run.h5", "a") as file:
-        del file["energy/supplied"]
-        file.attrs["case"] = "[run\n"
-    for words, said in (
-        (("rerun", "results/bar"), "results/bar/run.h5: the case in it is damaged: "),
-        (("plot", "results/bar", "--energy"), "is of another version of dembound, its energy ledger has no supplied"),
-    ):
-        answer = dembound(*words)
-        assert answer.code == 5
-        (line,) = answer.err.splitlines()
-        assert said in line
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps folders that are used")
-def test_a_link_to_nothing_and_a_folder_that_is_gone_are_said(dembound, written, tmp_path, monkeypatch) -> None:
-    (tmp_path / "results").symlink_to("/nowhere/results")
-    answer = dembound("run", written())
-    assert (answer.code, answer.err) == (5, "results: is a link to /nowhere/results, which does not exist\n")
-    (tmp_path / "gone").mkdir()
-    monkeypatch.chdir(tmp_path / "gone")
-    (tmp_path / "gone").rmdir()
-    answer = dembound("new")
-    assert (answer.code, answer.err) == (5, "the current folder has been deleted; change to another one\n")
 
 
 def test_a_run_ends_with_peaks_files_and_the_next_command(dembound, written, tmp_path) -> None:

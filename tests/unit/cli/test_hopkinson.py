@@ -101,17 +101,6 @@ def write_run(path) -> None:
             group.attrs["position"] = [1.0, 0.0]
 
 
-def test_options_of_text_files_are_refused_for_results_of_a_run(dembound, tmp_path) -> None:
-    write_run(tmp_path / "run.h5")
-    of_text = (("--unit", "kPa"), ("--time-unit", "ms"), ("--time-column", "1"), ("--scale", "2"))
-    for options in (*of_text, ("--gauge-factor", "2", "--excitation", "5")):
-        says = f"{options[0]}: is for text files, run.h5 has results of a run, with stresses in Pa and times in s; "
-        for command in (("hopkinson", *MONITORS), ("gauge", "run.h5")):
-            told = dembound(*command, *options)
-            assert (told.code, says in told.err) == (2, True), told.err
-    assert "--column: is for text files" in dembound("gauge", "run.h5", "--column", "front").err
-
-
 def test_a_picture_and_its_table_are_written(dembound, small_run, spalled_run, tmp_path):
     for options, head in (
         (("--show", "fourier", "--quantity", "acceleration", "--component", "both"), "frequency (Hz),"),

@@ -95,25 +95,6 @@ def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
     np.testing.assert_array_equal(velocity, VELOCITY)
 
 
-def test_what_does_not_move_with_the_free_end_is_refused(record):
-    def refused(file, name):
-        with pytest.raises(CaseError) as caught:
-            read_free_end(file, name)
-        return caught.value.problems[0]
-
-    said = "--free-end: is {}, must be a monitor at the end opposite the load, "
-    for name in ("near", "end.txt"):
-        assert refused(record, name) == said.format(name) + "which is end"
-    with h5py.File(record, "r+") as file:
-        file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.0, "ends": ["free", "fixed"]})
-        file["cracks/time"] = np.empty(0)
-    assert refused(record, "end") == "--free-end: is end, where the bar's end is fixed, must be free"
-    with h5py.File(record, "r+") as file:
-        file.attrs["loaded"] = "both"
-    line = f"{record}: has a bar loaded at both ends, must be loaded at the left or the right"
-    assert refused(record, "far") == line
-
-
 @pytest.mark.parametrize("loaded", ["left", "right"])
 def test_a_record_tells_of_its_bar(record, loaded):
     assert read_gauge(record, "near").metadata is None

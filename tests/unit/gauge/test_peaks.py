@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.gauge.peaks import Peaks, crest, denoised, first_fall, matched, positive_peaks
+from dembound.gauge.peaks import Peaks, denoised, first_fall, matched, positive_peaks
 
 TIME = 0.5 * np.arange(1000)
 CRESTS, HEIGHTS, LENGTH = np.array([100.15, 231.8, 360.05]), np.array([2.0, 1.0, 0.3]), 40.0
@@ -69,23 +69,6 @@ def test_the_first_fall_ends_where_it_rises_again_and_bears_noise():
     assert first_fall(-risen[::-1]) == pytest.approx(first_fall(risen), rel=1e-13)
     for without in (np.zeros(1000), TIME, -TIME, np.minimum(TIME, 200.0), -np.abs(TIME - 200.0)):
         assert np.isnan(first_fall(without))
-
-
-def test_a_noisy_crest_is_neither_raised_nor_lowered():
-    """Of a haversine and of an exponential rise and decay, within the errors of 60 crests and a third of one."""
-    time = np.arange(400.0)
-    hump = np.where((time > 100.3) & (time < 250.3), 0.5 - 0.5 * np.cos(2.0 * np.pi * (time - 100.3) / 150.0), 0.0)
-    since = np.clip(time - 100.3, 0.0, None)
-    decay = np.exp(-since / 80.0) - np.exp(-since / 5.0)
-    last = np.log(16.0) * 5.0 * 80.0 / 75.0  # where both slopes are equal
-    decay /= np.exp(-last / 80.0) - np.exp(-last / 5.0)
-    random = np.random.default_rng(3)
-    for values, noise in ((hump, 0.01), (decay, 0.003)):
-        found = [crest(values + noise * random.standard_normal(400), noise, 73) for _ in range(60)]
-        off = np.array([(each.height - 1.0) / each.error for each in found])
-        assert abs(off.mean()) < 1.0 / 3.0 + 2.0 / np.sqrt(60.0)
-        assert np.mean(np.abs(off) < 2.0) > 0.85  # 0.95 - 4 √(0.95 · 0.05/60)
-        assert np.mean([each.error for each in found]) < noise
 
 
 TIMES = 0.5 * np.arange(2000)

@@ -22,7 +22,6 @@ def commas(*form):
     return [line.replace(".", ",") for line in lines(*form)]
 
 
-QUOTED = [f"'{time}','{value}'" for time, value in (line.split(";") for line in commas("{:.6f};{:.4f}"))]
 TEKTRONIX = ["Record Length,4,Points", "Vertical Units,V,", "Horizontal Units,s,", ",,"]
 FILES = {
     "tektronix": ("", [f"{left},{right}," for left, right in zip(TEKTRONIX, lines("{:.6f},{:.4f}"), strict=True)], "V"),
@@ -171,22 +170,6 @@ def test_a_bridge_gives_back_the_strain_of_its_arms(wiring, poisson, arms):
     voltage = 10.0 * 500.0 * (first / (first + second) - fourth / (fourth + third))
     bridge = Bridge(2.1, wiring, 10.0, 500.0, poisson)
     np.testing.assert_allclose(bridge.strain(voltage), strain, rtol=1e-10)
-
-
-def test_bridges_that_make_no_sense_are_refused(tmp_path):
-    for given, said in (
-        ((0.0, "quarter", 10.0), "--gauge-factor: is 0"),
-        ((2.0,), "--excitation: is missing"),
-        ((2.0, "full", 10.0), "--poisson: is missing"),
-    ):
-        with pytest.raises(CaseError, match=said):
-            Bridge(*given)
-    with pytest.raises(CaseError, match="--excitation: the signal is up to 30 % of the excitation"):
-        Bridge(2.0, "quarter", 10.0).strain(np.array([0.0, 3.0]))
-    path = tmp_path / "scope.csv"
-    path.write_text("t (s),sigma (MPa)\n0,1\n1,2\n2,4\n")
-    with pytest.raises(CaseError, match="--gauge-factor: is for voltages, the values are in MPa"):
-        read_signal(path, Reading(bridge=Bridge(2.0, "quarter", 10.0)))
 
 
 @pytest.mark.parametrize(

@@ -84,28 +84,6 @@ def test_a_record_that_contradicts_an_estimate_refuses_it(gauge, changes, given,
     assert said in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"spall": 0.99}, "--spall: is 0.99 m, must be above 0 and below the length, 0.99 m"),
-        ({"speed": 0.0}, "--wave-speed: is 0 m/s, must be finite and above 0"),
-        ({"free_end": FREE_END}, "--density: is missing, must be that of the bar (kg/m³)"),
-        (
-            {"spall": -1.0, "coefficient": -1.0},
-            "--spall: is -1 m, must be above 0 and below the length, 0.99 m\n"
-            "--attenuation: is -1 1/m, must be finite and not below 0",
-        ),
-        ({"count": 1}, "--wave-speed: needs two tension peaks to be estimated, 1 found; give it"),
-    ],
-)
-def test_what_is_not_enough_is_refused(gauge, given, said):
-    with pytest.raises(CaseError) as caught:
-        evaluate(replace(gauge, density=None), **given)
-    assert str(caught.value) == said
-    with pytest.raises(CaseError, match="--free-end: must fall and rise again before the pulse is back there"):
-        evaluate(gauge, free_end=(TIME, np.linspace(0.0, 1.0, 400)))
-
-
 @pytest.fixture
 def loaded(spalling, tmp_path):
     """Records and reads the spalling bar loaded at one side, with two gauges and one at the free end."""

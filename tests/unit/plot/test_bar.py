@@ -63,25 +63,6 @@ def test_stress_damage_and_cracks_stand_over_place_and_time_and_below_along_the_
         np.testing.assert_array_equal(line.get_ydata(), recorded[name][-1] / scale)
 
 
-def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed, run):
-    shots = list(changed["snapshots"].values())
-    for number, shot in enumerate(shots):
-        shot["stress"][:] = 1e6 * (number >= 6)
-        shot["damage"][:] = float(number >= 6)
-    for number, time in ((5, 0.7e-3), (6, 1.1e-3)):  # not where evenly spaced ones are, 0.75 and 0.875 ms
-        shots[number].attrs["time"] = time
-    changed.flush()
-    stress, damage = plot_bar(run).axes[:2]
-    below, above = drawn(stress, 0.5, 0.6), drawn(stress, 0.5, 1.1)
-    # one pixel of some 500 in 1.5 ms is less than 1 % of the way between the snapshots, and colours are whole numbers
-    for share in (0.25, 0.5, 0.75):
-        expected = below + share * (above - below)
-        np.testing.assert_allclose(drawn(stress, 0.5, 0.7 + 0.4 * share), expected, rtol=0, atol=4.0)
-    np.testing.assert_array_equal(drawn(damage, 0.5, 0.89), drawn(damage, 0.5, 0.6))
-    np.testing.assert_array_equal(drawn(damage, 0.5, 0.91), drawn(damage, 0.5, 1.4))
-    assert np.any(drawn(damage, 0.5, 0.89) != drawn(damage, 0.5, 0.91))
-
-
 @pytest.mark.parametrize(
     ("field", "scale", "label", "snapshot"),
     [

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.chart import LEAST, plot_chart
+from dembound.plot.chart import plot_chart
 from dembound.plot.style import save
 
 
@@ -44,20 +44,6 @@ def test_points_are_errors_in_per_cent_at_their_cost(chart) -> None:
     (front,) = (line for line in panel.lines if line.get_label() == "Pareto front")
     np.testing.assert_allclose(front.get_xydata(), [(4.0, 1.0), (0.5, 20.0)])
     assert texts(side) == ["Pareto front, the cheapest first", "coarse: 20 %, 0.5 s", "fine: 1 %, 4 s"]
-
-
-def test_reference_others_and_failures_are_listed_and_exact_results_drawn_at_the_least(chart) -> None:
-    choices = [("own", 0.0, 8.0), ("good", 1e-14, 1.0), ("bad " * 40, 0.2, 2.0), ("none", 0.0, np.nan)]
-    panel, side = plot_chart(chart(choices, front=[1], own=(0,), failed=[3])).axes
-    assert texts(side) == [
-        *("Pareto front, the cheapest first", "good: 0 %, 1 s", "reference", "1  own: 8 s"),
-        *("others", side.texts[5].get_text(), "failed", "4  none: too long a step"),
-    ]
-    assert side.texts[5].get_text().startswith("3  bad bad")  # the one whose name is too long for the picture
-    (line,) = (line for line in panel.lines if line.get_linestyle() == ":")
-    assert list(line.get_xdata()) == [8.0, 8.0]
-    (point,) = (line for line in panel.lines if line.get_gid() == "good")
-    assert point.get_ydata()[0] == LEAST
 
 
 def test_the_sentence_stays_below_any_title(chart, tmp_path) -> None:

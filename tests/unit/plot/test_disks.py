@@ -1,7 +1,5 @@
 """Outlines of holes are those of the case, means those of cells, and a continuum is drawn in their colours."""
 
-from pathlib import Path
-
 import h5py
 import numpy as np
 import pytest
@@ -12,8 +10,7 @@ from small_cases import SURROUNDED, small
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
-from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, Window, mean_on_grid, read_continuum, read_holes
-from dembound.plot.field import read_disks
+from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, read_holes
 from dembound.plot.moving import MovingScene
 from dembound.plot.scene import plot_scene
 from dembound.results.recorder import Recorder
@@ -83,12 +80,6 @@ def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):
         assert len(positions) < 24 * 16
 
 
-def test_means_are_taken_cell_by_cell_and_empty_cells_stay_empty():
-    positions = np.array([[0.2, 0.2], [0.4, 0.4], [1.5, 0.5], [0.5, 1.5]])
-    means = mean_on_grid(positions, np.array([1.0, 3.0, 5.0, 7.0]), Window(np.zeros(2), np.full(2, 2.0)), 0.9)
-    np.testing.assert_array_equal(means, [[2.0, 5.0], [7.0, np.nan]])
-
-
 LEFT, RIGHT, BOTTOM, TOP = -9.0, 21.0, -9.0, 6.0
 """Sides of the scene, with a margin of one and layers of two elements of 3 m beyond 12 m × 6 m."""
 
@@ -151,26 +142,3 @@ def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> N
     assert {y for line in surface.get_segments() for y in line[:, 1]} == {TOP}
     x, y = np.array(ties.get_offsets()).T
     assert ((x == 0.0) | (x == 12.0) | (y == 0.0)).all()
-
-
-def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run, copied) -> None:
-    """There the last nodes are those of the first column."""
-    with copied(surrounded_run) as file:
-        group = file["continuum"]
-        position, node = group["position"][:], group["node"][:]
-        last = {tuple(place): node for node, place in enumerate(position.tolist()) if place[0] == LEFT}
-        moved = np.array([last.get((LEFT, y), n) if x == RIGHT else n for n, (x, y) in enumerate(position)])
-        before = read_continuum(file).corners
-        group["node"][:] = moved[node]
-        assert (moved[node] != node).any()
-        np.testing.assert_allclose(read_continuum(file).corners, before, atol=1e-12)
-
-
-def test_a_line_says_below_which_height_the_free_field_is_left_out(surrounded_run, copied) -> None:
-    with copied(surrounded_run) as file:
-        height = file["continuum/position"][:, 1]
-        file["continuum/total"] = height > -1.5
-        assert read_disks(file).foot == height[height <= -1.5].max()
-        path = Path(file.filename)
-    (line,) = [each for each in plot_scene(path).axes[0].collections if each.get_label().startswith("below: motion")]
-    assert np.ptp(line.get_segments()[0][:, 1]) == 0.0

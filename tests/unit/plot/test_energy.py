@@ -65,17 +65,3 @@ def test_what_came_in_and_what_was_absorbed_is_drawn_for_every_side(divided):
         "absorbed: by the bottom side of the column": 1.5,
         "stored: springs of the left side": 0.25,
     }
-
-
-@pytest.mark.parametrize(
-    ("largest", "joule", "drawn"),
-    [(0.0, "J", 0.0), (1e3, "kJ", 1.0), (3e-14, "nJ", 3e-5)],
-)
-def test_the_unit_of_the_axis_has_the_prefix(cracked_run, run, copied, largest, joule, drawn):
-    with copied(cracked_run) as file:
-        file["energy"].pop("sides", None)
-        fill(file, 0.0)
-        file["energy/kinetic"][:] = largest
-    upper = plot_energy(run).axes[0]
-    assert upper.get_ylabel() == f"energy per metre of thickness ({joule}/m)"
-    assert [line.get_ydata()[-1] for line in upper.lines] == pytest.approx([drawn] if largest else [], rel=1e-12)

@@ -5,9 +5,8 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
 
-from dembound.casefile.disks.monitor_rows import shown_names, spread_names
 from dembound.errors import CaseError
-from dembound.plot.scene import CRACKS, MANY_CRACKS, plot_scene
+from dembound.plot.scene import plot_scene
 
 
 def disks_of(panel):
@@ -103,52 +102,6 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke_above_the_disks(crack
             expected = cracks["position"][past & (cracks["shear"][:] == shear)]
             np.testing.assert_array_equal(marks[f"{label} ({len(expected)})"].get_offsets(), expected)
             assert len(expected) > 0
-
-
-def test_many_cracks_have_smaller_marks_so_that_disks_stay_visible(tmp_path):
-    """Four times as many cracks as `MANY_CRACKS` have marks of a quarter of the area."""
-    path = block(tmp_path / "run.h5", 8, 6, pulse(4.0))
-    with h5py.File(path, "a") as file:
-        for name, values in (("time", 0.0), ("shear", False), ("position", [[3.0, 3.0]])):
-            del file[f"cracks/{name}"]
-            file[f"cracks/{name}"] = np.full((4 * MANY_CRACKS, 2) if name == "position" else 4 * MANY_CRACKS, values)
-    (marks,) = [each for each in plot_scene(path).axes[0].collections if "tension" in each.get_label()]
-    _, size, _ = CRACKS["bond broken in tension"]
-    np.testing.assert_allclose(marks.get_sizes(), size / 4.0)
-
-
-def test_a_long_row_of_monitors_is_named_at_its_ends():
-    row = [f"surface_{number}" for number in range(1, 31)]
-    assert shown_names(["crest", *row, "toe_1", "toe_2"]) == ["crest", "surface_1", "surface_30", "toe_1", "toe_2"]
-
-
-def test_of_long_rows_some_monitors_are_drawn():
-    row = [f"surface_{number}" for number in range(1, 29)]
-    some = [f"surface_{number}" for number in (1, 6, 12, 17, 23, 28)]
-    assert spread_names(["crest", *row, "toe"], 8) == ["crest", *some, "toe"]
-    assert spread_names([*row, *(f"base_{k}" for k in range(8))], 4) == ["surface_1", "surface_28", "base_0", "base_7"]
-    assert spread_names(row[:8], 8) == row[:8]
-    single = [f"gauge {number}" for number in range(20)]
-    assert spread_names(single, 8) == single
-
-
-def test_layers_are_named_where_the_ground_is_higher(tmp_path):
-    """In the body, left if its right side is lower, so that no name is in the air or on a free-field column."""
-    for lower, x in ((False, 20.0), (True, 3.0)):
-        path = block(tmp_path / "run.h5", 23, 10, lambda x: x)
-        with h5py.File(path, "a") as file:
-            position = file["particles/position"][:]
-            column = position[:, 0] < 3.0
-            kept = column | (position[:, 0] < 13.0) | (position[:, 1] < 5.0) if lower else column | True
-            kept &= position[:, 0] < 20.0
-            for name in ("particles/position", "particles/radius", "snapshots/0000/velocity"):
-                values = file[name][:]
-                del file[name]
-                file[name] = values[kept]
-            file.attrs["column"] = int(np.count_nonzero(column))
-            file.attrs["layer_names"], file.attrs["joints"] = ["soil", "rock"], [4.0]
-        names = {text.get_text(): text.xy for text in plot_scene(path).axes[0].texts}
-        assert (names["soil"], names["rock"]) == ((x, 10.0), (x, 4.0))
 
 
 def test_small_disks_give_way_to_their_mean(run):

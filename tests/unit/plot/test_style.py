@@ -7,10 +7,8 @@ import pytest
 from matplotlib import image
 
 from dembound.plot.style import (
-    Powers,
     decade,
     new_figure,
-    outside_legend,
     save,
     time_unit,
 )
@@ -34,35 +32,6 @@ def test_times_of_less_than_a_tenth_of_a_second_are_reported_in_milliseconds_and
     assert [decade(value) for value in (1.0, 1e-3, 1e12)] == ["10⁰", "10⁻³", "10¹²"]
     assert [time_unit(last).label for last in (0.0, 0.0999, 0.1, 20.0)] == ["time (ms)"] * 2 + ["time (s)"] * 2
     assert [0.05 / time_unit(last).seconds for last in (0.05, 0.5)] == [50.0, 0.05]
-
-
-@pytest.mark.parametrize(("largest", "power"), [(0.5, ""), (3e-5, "×10⁻⁵"), (2e12, "×10¹²")])
-def test_a_common_power_of_ten_stands_at_the_end_of_an_axis(largest, power):
-    figure = new_figure(3.0, 2.0)
-    panel = figure.subplots()
-    panel.set_ylim(-largest, largest)
-    panel.yaxis.set_major_formatter(Powers())
-    figure.draw_without_rendering()
-    assert panel.yaxis.get_offset_text().get_text() == power
-    assert max(float(label.get_text().replace("−", "-")) for label in panel.get_yticklabels()) < 10.0
-
-
-def test_legends_have_what_is_seen_alone():
-    figure = new_figure(4.0, 3.0)
-    panel = figure.subplots()
-    x = np.linspace(0.0, 1.0, 50)
-    panel.plot(x, x, label="line")
-    panel.plot(x + 5.0, x, label="line beyond the axes")
-    panel.fill_between(x, x - 1e-4, x + 1e-4, label="band within the line")
-    panel.fill_between(x, x - 0.1, x + 0.1, label="band")
-    panel.scatter([0.5], [0.5], label="point")
-    panel.scatter([9.0], [0.5], label="point beyond")
-    panel.axhline(0.5, label="level")
-    panel.axhline(7.0, label="level beyond")
-    panel.plot([], [], label="key")
-    panel.set(xlim=(0.0, 1.0), ylim=(-0.2, 1.2))
-    outside_legend(figure, [panel], 3)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["line", "band", "point", "level", "key"]
 
 
 @pytest.fixture

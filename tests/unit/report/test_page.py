@@ -164,22 +164,6 @@ def test_an_estimate_some_snapshots_and_an_exact_motion_beside_the_run(two, push
     assert names == [["whole", "front_exact"]] * 2
 
 
-def test_a_foreign_summary_is_one_line_and_nothing_is_written(pushed_runs, tmp_path):
-    record = copied(pushed_runs[0], tmp_path / "foreign")
-    summary = record.parent / "summary.json"
-    own = json.loads(summary.read_text())
-    damaged, other = f"{summary}: is damaged", f"{record}: it or its summary.json is not of this version of dembound ("
-    texts = ["[]", "{}", '{"energy": 3}', '{"sides": [], "monitors": {"a": 1}}', '"text"', "null"]
-    changes = [{"energy": 3}, {"sides": []}, {"sides": {"right": "text"}}, {"seconds": None}]
-    for text, begins in [(each, damaged) for each in texts] + [(json.dumps(own | each), other) for each in changes]:
-        summary.write_text(text)
-        with pytest.raises(RecordError) as raised:
-            write_report([record], tmp_path / "page.html")
-        (line,) = str(raised.value).splitlines()
-        assert line.startswith(begins)
-        assert not (tmp_path / "page.html").exists()
-
-
 def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
     damaged = tmp_path / "damaged.h5"
     damaged.write_bytes(pushed_runs[0].read_bytes()[:5000])

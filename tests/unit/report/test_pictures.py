@@ -1,36 +1,15 @@
 """Pictures have the pixels and the lines of their figures, movies a frame for each snapshot, at their speed."""
 
-import base64
-import errno
-import io
-
 import h5py
 import numpy as np
 import pytest
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from PIL import Image
 
 from dembound.errors import CaseError
 from dembound.plot.energy import plot_energy
 from dembound.plot.side import plot_boundary, plot_side
-from dembound.plot.style import SIGNED_MAP
-from dembound.report import pictures as movie_module
-from dembound.report.pictures import chart_of, movie_of, thinned, uri_of, write_movie
-
-
-def pixels_in(uri):
-    kind, _, data = uri.partition(",")
-    assert kind == "data:image/webp;base64"
-    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data))).convert("RGB"))
-
-
-def test_a_uri_holds_the_pixels():
-    pixels = np.random.default_rng(5).integers(0, 256, (13, 17, 3), dtype=np.uint8)
-    np.testing.assert_array_equal(pixels_in(uri_of(pixels, lossless=True)), pixels)
-    smooth = np.linspace(0.0, 255.0, 64 * 64 * 3).reshape(64, 64, 3).astype(np.uint8)
-    near = pixels_in(uri_of(smooth, lossless=False))
-    assert np.abs(near.astype(int) - smooth).max() < 16  # less than is visible
+from dembound.report.pictures import chart_of, movie_of, thinned, write_movie
 
 
 @pytest.mark.parametrize(("count", "most"), [(10, 10), (1003, 100)])
@@ -120,44 +99,3 @@ def test_frames_are_those_of_the_snapshots_in_a_folder_without_loss(pushed_movie
         np.testing.assert_array_equal(np.asarray(Image.open(folder / f"{number:04d}.png")), whole)
     with pytest.raises(CaseError, match="frames is there already, frames are written to a new folder"):
         write_movie(pushed_movie, folder)
-
-
-def test_what_fails_in_between_leaves_nothing(pushed_movie, tmp_path):
-    def full(drawn: int) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    for name in ("movie.gif", "frames"):
-        with pytest.raises(OSError, match="No space left"):
-            write_movie(pushed_movie, tmp_path / name, progress=full)
-        assert not list(tmp_path.iterdir())
-
-
-def test_a_gif_has_the_shades_of_the_colour_map(monkeypatch):
-    """A wave in a mostly white picture, beside a bar of all its colours: no two levels of 20 look the same."""
-    shades = colormaps[SIGNED_MAP](np.linspace(0.0, 1.0, 256), bytes=True)[:, :3]
-    frame = np.full((600, 400, 3), 255, np.uint8)
-    frame[:256, 350:370] = shades[:, None]
-    frame[300:500, :256] = shades[64:192].repeat(2, axis=0)[None]
-    frame[520:560, ::7] = np.random.default_rng(4).integers(0, 255, (40, 58, 1))
-
-    class One:
-        def __len__(self):
-            return 1
-
-        def frame(self, number):
-            return frame
-
-    made = np.asarray(movie_module._reduced(frame, movie_module._common_colours(One())).convert("RGB")).astype(int)
-    errors = np.abs(made - frame)[:500].max(axis=2)
-    # 96 shades are 2.7 of 255 steps of the map apart, of which one changes a colour by up to 6: half of 16, rounded
-    assert errors.max() <= 9
-    assert len(np.unique(made[:256, 360], axis=0)) >= 96
-
-
-def test_what_cannot_be_shown_is_said(blind_run, pushed_runs, pushed_movie, tmp_path):
-    with pytest.raises(CaseError, match="has no snapshots"):
-        movie_of(blind_run)
-    with pytest.raises(CaseError, match="field: is damage"):
-        movie_of(pushed_runs[0], field="damage")
-    with pytest.raises(CaseError, match=r"--output: is .*movie\.avi, must end in \.gif, or have no ending"):
-        write_movie(pushed_movie, tmp_path / "movie.avi")

@@ -50,23 +50,6 @@ def test_a_component_that_the_reference_hardly_has_gives_no_error(tmp_path):
     assert found.apart == 0.0  # rounding
 
 
-def test_all_twins_share_one_line_for_each_run(tmp_path):
-    """The line is that of the worst twin, for columns that stand elsewhere."""
-    names = ["P", "P.free_field", "Q", "Q.free_field"]
-    still = np.zeros_like(TIME)
-    reference = record(tmp_path / "a.h5", "a", {name: (TIME, TIME, still) for name in names}, (-5.0, 2.0))
-    worse = {name: (TIME, (1.0 + 0.1 * k) * TIME, still) for k, name in enumerate(names)}
-    places = {"P": (-5.0, 2.0), "P.free_field": (-9.0, 2.0), "Q": (-5.0, 2.0), "Q.free_field": (-9.0, 2.5)}
-    runs = [record(tmp_path / f"{name}.h5", name, worse, places) for name in "bc"]
-
-    found = compare(reference, runs, "velocity")
-
-    expected = ["P", "Q", "*.free_field (2)"]
-    assert [(line.run, line.monitor) for line in found] == [(run, name) for run in "bc" for name in expected]
-    assert found[2].rms == pytest.approx(0.3)
-    assert found[2].apart == pytest.approx(0.5)  # in height
-
-
 def test_what_is_still_in_the_reference_is_left_out_and_the_others_are_compared(tmp_path):
     moves, noise, late = np.sin(TIME), 1e-12 * np.sin(50.0 * TIME), 1.0 * (TIME > 0.6)
     columns = {"P": moves, "P.free_field": noise, "Q": 0.0 * TIME, "late": late}

@@ -195,22 +195,6 @@ def test_cracks_laws_and_coordination_are_kept_however_the_run_is_cut(tmp_path, 
         assert np.any(coordination < bonds)
 
 
-def test_a_run_that_ends_early_leaves_its_histories_and_is_not_complete(tmp_path, simulation) -> None:
-    def fail() -> None:
-        with recorder(tmp_path / "run.h5", simulation) as kept:
-            for _ in range(3):
-                kept.append(simulation.advance(5))
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        fail()
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert not file.attrs["complete"]
-        assert file.attrs["steps"] == 15
-        assert file["histories/front/time"][:].tolist() == [k * STEP for k in range(15)]
-        assert np.any(file["boundaries/left/peak_velocity"])
-
-
 @pytest.mark.parametrize(("limit", "value", "samples"), [("KEPT_BYTES", 1, 0), ("KEPT_SECONDS", 0.0, 10), (None, 0, 0)])
 def test_what_was_written_can_be_read_if_the_process_dies(
     tmp_path, simulation, monkeypatch, limit, value, samples

@@ -2,18 +2,15 @@
 
 import errno
 import json
-import time
 import zlib
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.datasets import damage_in_words, require_places
-from dembound.results.reader import history_of, open_record, snapshots_of
-from dembound.results.structure import MOST_ATTRIBUTES, MOST_MEMBERS
+from dembound.results.datasets import damage_in_words
+from dembound.results.reader import history_of, open_record
 from dembound.results.summary import read_summary
 
 
@@ -46,15 +43,6 @@ def test_plain_groups_are_opened_and_links_refused(record) -> None:
     for target in ("/", "/histories", "/histories/top/time"):
         path = record(lambda file, target=target: file["histories/top"].__setitem__("again", file[target]))
         assert refusal(path).endswith("is linked to more than once")
-
-
-def test_groups_deep_in_each_other_are_refused(record) -> None:
-    def deep(file) -> None:
-        group = file
-        for _ in range(2000):
-            group = group.create_group("g")
-
-    assert refusal(record(deep)).endswith("is more than 10 groups deep")
 
 
 def large(file, **more) -> None:
@@ -111,91 +99,11 @@ def test_summaries_that_are_none_are_refused(tmp_path) -> None:
             requested()
 
 
-def crowded(file, path, count) -> None:
-    """Many groups, quickly made."""
-    group = file.require_group(path)
-    for number in range(count):
-        h5py.h5g.create(group.id, f"{number:06d}".encode())
-
-
-def within(seconds, path) -> str:
-    """The refusal of a file, by a search that takes no more CPU time than this."""
-    began = time.process_time()
-    why = refusal(path)
-    assert time.process_time() - began < seconds
-    return why
-
-
-def test_files_of_too_many_groups_or_attributes_are_refused_at_once(record) -> None:
-    why = f"choices: has more than {MOST_MEMBERS:,} members"
-    assert within(5.0, record(lambda file: crowded(file, "choices", MOST_MEMBERS + 1))) == why
-    many = record(lambda file: file["histories"].attrs.update({f"a{k}": 1.0 for k in range(MOST_ATTRIBUTES + 1)}))
-    assert within(1.0, many) == f"histories: has more than {MOST_ATTRIBUTES} attributes"
-
-
-def odd_snapshot(change):
-    """Writes three snapshots, of which the second is changed."""
-
-    def write(file) -> None:
-        for number in range(3):
-            group = file.create_group(f"snapshots/{number:04d}")
-            group["velocity"] = np.zeros((4, 3))
-        change(file, file["snapshots/0001"])
-
-    return write
-
-
-@pytest.mark.parametrize(
-    ("change", "why"),
-    [
-        (lambda _, group: group.__setitem__("a", h5py.SoftLink("/")), "snapshots/0001/a: is a link, of which"),
-        (lambda file, group: group.__setitem__("a", file["/"]), "snapshots/0001/a: is linked to more than once"),
-        (lambda _, group: crowded(group, "more", 200), "snapshots/0001: has more than 100 groups, datasets and"),
-    ],
-)
-def test_a_snapshot_is_searched_when_it_is_used(record, change, why) -> None:
-    path = record(odd_snapshot(change))
-    with open_record(path) as file:
-        snapshots = snapshots_of(file)
-        assert len(snapshots) == 3
-        assert snapshots[0]["velocity"].shape == (4, 3)
-        for use in (lambda: snapshots[1], lambda: snapshots[-2], lambda: snapshots[:2], lambda: list(snapshots)):
-            with pytest.raises(RecordError) as refused:
-                use()
-            assert why in str(refused.value)
-
-
 def test_times_that_do_not_increase_are_refused(record) -> None:
     for times in ([0.0, 1.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0], [0.0, np.nan, 1.0, 2.0]):
         path = record(lambda file, times=times: file["histories/top/time"].__setitem__(..., times))
         with open_record(path) as file, pytest.raises(RecordError, match=r"histories/top/time"):
             history_of(file["histories/top"], "velocity")
-
-
-@pytest.fixture
-def three_particles(tmp_path) -> Path:
-    """Three particles, a monitor of the last, and one between nodes."""
-    path = tmp_path / "run.h5"
-    with h5py.File(path, "w") as file:
-        file["particles/position"], file["particles/radius"] = np.zeros((3, 2)), np.ones(3)
-        for name, particle in (("last", 2), ("between", -1)):
-            file[f"histories/{name}/velocity"] = np.zeros((4, 3))
-            file[f"histories/{name}"].attrs["particle"] = particle
-    return path
-
-
-def test_particles_of_no_size_and_monitors_of_none_are_refused(three_particles) -> None:
-    with h5py.File(three_particles, "a") as file:
-        require_places(file)
-        for particle in (3, -2):
-            file["histories/last"].attrs["particle"] = particle
-            with pytest.raises(RecordError, match=f"histories/last is of particle {particle}, there are 3"):
-                require_places(file)
-        file["histories/last"].attrs["particle"] = 2
-        for radius in (0.0, -0.5, np.nan):
-            file["particles/radius"][1] = radius
-            with pytest.raises(RecordError, match=f"particles/radius is {radius:g} in row 1"):
-                require_places(file)
 
 
 VELOCITY = "snapshots/0001/velocity"

@@ -11,7 +11,7 @@ import tomli_w
 from small_cases import SPALLING, small
 
 import dembound
-from dembound.errors import CaseError, RecordError
+from dembound.errors import RecordError
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
@@ -90,17 +90,6 @@ def written(folder: Path, **changes: float) -> Path:
     keys = {key.replace("__", "."): value for key, value in changes.items()}
     path.write_text(small(SPALLING, changes=SHORT | keys).text)
     return path
-
-
-def test_results_of_a_file_of_the_same_name_in_another_folder_are_not_replaced(tmp_path) -> None:
-    one, other = written(tmp_path / "one"), written(tmp_path / "other")
-    results = tmp_path / "results"
-    run_case(dembound.load(one), results)
-    with pytest.raises(CaseError, match=r"has results of .*one.a\.toml, which this run of .*other.a\.toml"):
-        run_case(dembound.load(other), results)
-    run_case(dembound.load(written(tmp_path / "one", run__duration=2e-4)), results)  # the same file, changed
-    one.unlink()
-    run_case(dembound.load(other), results)  # the file has been moved
 
 
 def test_a_case_file_that_has_changed_since_the_run_began_is_named_with_its_keys(tmp_path) -> None:

@@ -6,8 +6,6 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
-from dembound.plot.surface import plot_surface
 from dembound.results.surface import amplification
 
 STEP, COUNT = 1e-3, 2000
@@ -77,45 +75,6 @@ def test_the_free_field_may_be_named_and_monitors_chosen(run):
     found = amplification(run, ["row_2", "row_10"])
     assert found.deep == pytest.approx(4.5)
     assert list(found.notes())[-1].startswith("the free field is up to 4.5 m below the surface")
-
-
-def test_what_cannot_be_shown_is_said(run):
-    for keys, line in (
-        ({"monitors": ["deep"]}, "--monitor: is deep, has no free field"),
-        ({"monitors": ["rows"]}, r"--monitor: is rows, must be one of row \(did you mean row\?\)"),
-        ({"reference": "nowhere"}, "--reference: is nowhere, must be one of row, deep"),
-    ):
-        with pytest.raises(CaseError, match=line):
-            amplification(run, **keys)
-    with h5py.File(run, "r+") as file:
-        for name in ("row_10", "row_1"):
-            file[f"histories/{name}.free_field/velocity"][...] = 0.0
-    with pytest.raises(CaseError, match=r"row_1\.free_field, does not move in this run"):
-        amplification(run)
-    with h5py.File(run, "r+") as file:
-        for name in ("row_10", "row_1", "row_2"):
-            del file[f"histories/{name}.free_field"]
-    with pytest.raises(CaseError, match="has no free field of its monitors, which a wave from below gives"):
-        amplification(run)
-
-
-def test_picture_and_table_have_the_ratios(run):
-    found = amplification(run)
-    figure = plot_surface(run, found, "both")
-    lines = {line.get_gid(): line.get_xydata() for line in figure.axes[0].lines if line.get_gid()}
-    np.testing.assert_allclose(lines["x"], [[1.0, 1.5], [4.0, 1.5], [np.nan, np.nan], [9.0, 1.5]])
-    maps = [mesh for panel in figure.axes for mesh in panel.collections if mesh.get_array() is not None]
-    drawn = maps[0].get_array().reshape(len(found.frequency), 3)
-    np.testing.assert_allclose(drawn[:, 1], found.spectra[1, :, 0])
-    only = plot_surface(run, found, "x")
-    assert {line.get_gid() for panel in only.axes for line in panel.lines} & {"x", "y"} == {"x"}
-    assert (len(list(found.notes((0,)))), len(list(found.notes()))) == (2, 3)  # y, over the size, has a note
-    heads, *rows = found.rows()
-    table = dict(zip(heads, rows[2], strict=True))
-    assert table["monitor"] == "row_10"
-    assert table["peak velocity y over free field's size (–)"] == 0.5
-    assert table["displacement y at the end less the free field's (m)"] == 0.2
-    assert all(head in ("monitor", "free field") or head.endswith(("(m)", "(–)")) for head in heads)
 
 
 def test_the_command_leaves_picture_and_table(run, dembound, tmp_path):

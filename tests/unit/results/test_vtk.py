@@ -3,7 +3,6 @@
 from xml.etree import ElementTree
 
 import h5py
-import meshio
 import numpy as np
 import pytest
 import pyvista
@@ -11,7 +10,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from dembound.kinds.bar.kind import Bars
 from dembound.kinds.disks.kind import Disks
-from dembound.results.vtk import temporal_file, write_paraview
+from dembound.results.vtk import write_paraview
 
 
 @pytest.fixture(scope="module")
@@ -92,29 +91,3 @@ def test_all_times_and_arrays_are_those_of_the_single_files(request, tmp_path, r
     for number, mesh in enumerate(meshes):
         assert_same(mesh, pyvista.read(tmp_path / f"{name}_{number:04d}.vtu"))
     assert any(not np.array_equal(mesh.points, meshes[0].points) for mesh in meshes)
-
-
-def lines(count: int, seed: int) -> meshio.Mesh:
-    """`count` separate lines, with one number for each and one for each of their ends."""
-    rng = np.random.default_rng(seed)
-    ends = np.arange(2 * count, dtype=np.int32).reshape(-1, 2)
-    points, at_ends, data = rng.normal(size=(2 * count, 3)), rng.normal(size=2 * count), rng.normal(size=count)
-    return meshio.Mesh(points, [("line", ends)], point_data={"end": at_ends}, cell_data={"force": [data]})
-
-
-def test_cells_may_come_and_go(tmp_path):
-    counts = [4, 4, 7, 0, 2, 4]
-    given = [lines(count, number) for number, count in enumerate(counts)]
-    with temporal_file(tmp_path / "lines.vtkhdf") as series:
-        for number, mesh in enumerate(given):
-            series.append(0.25 * number, mesh)
-    times, meshes = steps_of(tmp_path / "lines.vtkhdf")
-
-    assert times == [0.25 * number for number in range(6)]
-    for mesh, expected in zip(meshes, given, strict=True):
-        assert mesh.n_cells == len(expected.cells[0].data)
-        np.testing.assert_array_equal(mesh.points, expected.points.reshape(-1, 3))
-        np.testing.assert_array_equal(mesh.cell_connectivity, expected.cells[0].data.ravel())
-        if mesh.n_cells > 0:
-            np.testing.assert_array_equal(mesh.cell_data["force"], expected.cell_data["force"][0])
-            np.testing.assert_array_equal(mesh.point_data["end"], expected.point_data["end"])

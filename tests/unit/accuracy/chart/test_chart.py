@@ -199,40 +199,12 @@ def test_a_run_comes_back(record) -> None:
     assert record.get(KEY).motions["top"].time.dtype == np.float64
 
 
-def described(place, name, value):
-    return lambda file: file[place].attrs.__setitem__(name, value)
-
-
 def replaced(place, values):
     def change(file) -> None:
         del file[place]
         file[place] = values
 
     return change
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        *(described(f"runs/{KEY}", "steps", value) for value in ("x", np.ones(2))),
-        *(described(f"runs/{KEY}", "threads", value) for value in (np.nan, -1, h5py.Empty("f8"))),
-        described(f"runs/{KEY}", "failure", 3.0),
-        described(GAUGE, "position", [1.0, np.nan]),
-        *(replaced(f"{GAUGE}/time", np.array(times)) for times in ([0, 2, 1, 3.0], [0, 1, 2, 1e300], [0, 1, 2.0])),
-        replaced(f"{GAUGE}/velocity", np.zeros((4, 2))),
-        *(replaced(f"{GAUGE}/stress", values) for values in (np.full(4, np.nan), ["a"] * 4)),
-        *(replaced(f"runs/{KEY}/cpu", np.array(costs)) for costs in ([-1.0], [[1.0]])),
-        lambda file: file[f"runs/{KEY}"].__delitem__("wall"),
-        lambda file: file[GAUGE].__delitem__("velocity"),
-        lambda file: file[f"runs/{KEY}"].__setitem__("more", h5py.SoftLink("/")),
-    ],
-)
-def test_what_no_chart_has_written_is_refused_in_a_line(record, change) -> None:
-    with h5py.File(record.path, "a") as file:
-        change(file)
-    with pytest.raises(RecordError) as refused:
-        record.get(KEY)
-    assert len(str(refused.value).splitlines()) == 1
 
 
 def test_a_run_without_a_monitor_or_a_quantity_that_is_compared_is_refused(record) -> None:

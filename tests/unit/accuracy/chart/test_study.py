@@ -6,7 +6,6 @@ from contextlib import contextmanager
 import h5py
 import numpy as np
 import pytest
-from small_cases import around
 
 from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
@@ -173,22 +172,6 @@ def test_random_packings_are_realisations_but_boxes_elsewhere_have_the_same_bric
     assert len(DiskJudge().cautions(cases)) == 1
 
 
-@pytest.mark.slow
-def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, tmp_path) -> None:
-    """Dashpots that waves enter through stay in it: what they return would count against the continuum."""
-    base = {"type": "viscous_input", "wave_s": "pulse", "half_mass": True}
-    field = around("free_field") | {"bottom": base}
-    hole = {"name": "tunnel", "type": "circle", "centre": [10.0, 5.0], "radius": 2.0}
-    changes = {"packing.size": [20.0, 10.0], "motion.held": [], "hole": [hole], "boundary": field, "run.duration": 0.04}
-    case = bar({**changes, "monitor": [{"name": "crown", "position": [10.0, 7.5]}]})
-    beyond = around("outside") | {"bottom": {"type": "outside", "wave_s": "pulse"}}
-    named = {"field": {}, "beyond": {f"boundary.{side}": table for side, table in beyond.items()}}
-    found = chart(case, Options(named, 1), tmp_path / "chart", False, Log())
-    assert "before a continuum" in found.reference.sentence
-    by_field, by_continuum = (line.errors[0].rms for line in found.lines)
-    assert by_continuum < 0.2 * by_field
-
-
 def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
     broken = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
     assert reference._from_own_end(broken, -8.0, DiskJudge.from_left_end) == broken  # disks stay at their places
@@ -234,13 +217,6 @@ def test_what_cannot_be_compared_is_bad_input(charted, request, body, changes, o
     with pytest.raises(CaseError, match=said):
         charted(request.getfixturevalue(body)(changes), repeats=1, **options)
     assert "only valid" not in said or not (tmp_path / "chart").exists()
-
-
-def test_a_folder_of_something_else_is_refused(charted, spalling, tmp_path) -> None:
-    (tmp_path / "chart").mkdir()
-    (tmp_path / "chart" / "thesis.tex").touch()
-    with pytest.raises(CaseError, match="holds no chart"):
-        charted(spalling())
 
 
 def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:

@@ -12,7 +12,7 @@ from estimated_bars import RICKER, dalembert, recorded_of, scene, true_errors
 
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.of_bars.options import BarOption
-from dembound.accuracy.of_bars.search import MARGIN, Floors, first_echo, is_regular
+from dembound.accuracy.of_bars.search import MARGIN, Floors, first_echo
 from dembound.bar.scene import BarScene, build_bar
 from dembound.kinds import with_changes
 
@@ -149,7 +149,6 @@ def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
     assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.15)
 
 
-PLACES = {"near": 0.2, "far": 0.8}
 FROM_THE_RIGHT: dict[str, Any] = {
     "load": [{"name": "hit", "side": "right", "pressure": 1e6, "wave": "pulse", "nodes": 2}],
     "boundary": {"left": {"type": "viscous"}},
@@ -195,27 +194,6 @@ def test_of_other_ends_only_what_is_wrong_before_an_echo_counts(known: BarOption
     finer, coarser = (choice("viscous end", 0.5, spacing, "layers") for spacing in (0.005, 0.04))
     assert floor(known, finer, without_echo=0.12) == pytest.approx(0.12 / 4 / MARGIN)
     assert floor(known, coarser, without_echo=0.12) == pytest.approx(0.12 / MARGIN)
-
-
-@pytest.mark.parametrize(
-    ("name", "courant", "regular"),
-    [
-        ("finite differences, ν = 0.5", 0.97, True),  # √0.95 = 0.975
-        ("finite differences, ν = 0.5", 0.98, False),
-        ("m = 1, soft ends", 1.0, False),
-        ("m = 3, soft ends", 1.0, True),  # waves do not disperse at √5, above the limit 1.96
-        ("switch", 1.0, False),  # begins with finite differences
-        ("m = 3, soft ends", 2.19, False),
-    ],
-)
-def test_near_the_courant_number_without_dispersion_errors_vary(name: str, courant: float, regular: bool) -> None:
-    assert is_regular(choice(name, courant), PLACES) == regular
-
-
-def test_monitors_elsewhere_make_errors_irregular() -> None:
-    assert is_regular(choice("viscous end", 0.5, 0.05), PLACES)
-    assert not is_regular(choice("viscous end", 0.5, 0.05), PLACES | {"far": 0.79})
-    assert not is_regular(choice("viscous end", 0.5, 1.0 / 16), PLACES)
 
 
 @pytest.mark.parametrize(

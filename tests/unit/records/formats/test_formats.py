@@ -3,18 +3,14 @@
 import random
 import sys
 import warnings
-from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from dembound import table
 from dembound.errors import CaseError
-from dembound.records.channel import Record
-from dembound.records.formats import TYPES, Reading, read_record
-from dembound.records.formats.source import Format, Source
+from dembound.records.formats import Reading, read_record
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 G = 9.80665
@@ -181,12 +177,6 @@ def test_a_given_unit_replaces_one_of_the_same_quantity(tmp_path):
     assert refusal(without, Reading("kPa")) == "--unit: is kPa, must be one of g, gal, cm/s², m/s², cm/s, m/s, cm or m"
 
 
-def test_a_spectrum_in_the_layout_of_a_record_is_refused(tmp_path):
-    path = tmp_path / "spectrum.AT2"
-    path.write_text("PEER\nPlace\nVELOCITY SPECTRUM, UNITS: CM/S\nNPTS= 4, DT= .01 SEC\n 1. 2. 3. 1.\n")
-    assert refusal(path).endswith("holds a spectrum, must be a time series")
-
-
 def test_one_unit_is_not_given_to_several_quantities(tmp_path):
     """Velocities and displacements would become accelerations."""
     said = "--unit: is g, but the channels are different quantities; leave it out"
@@ -273,25 +263,6 @@ def test_binary_files_are_read_by_obspy_with_a_unit(tmp_path, monkeypatch):
     assert refusal(path, Reading("cm/s2")).endswith(
         "has gaps in channel HNE; keep the samples before or behind them alone"
     )
-
-
-class Added(Format):
-    """A format of another package."""
-
-    name = "added"
-
-    def recognises(self, lines):
-        return lines[0] == "added"
-
-    def read(self, source: Source) -> Record:
-        return Record("added", "", ())
-
-
-def test_other_packages_add_formats(monkeypatch):
-    entry = EntryPoint("added", f"{__name__}:Added", "dembound.records")
-    monkeypatch.setattr(EntryPoint, "load", lambda entry: Added)
-    monkeypatch.setattr(table, "_registered", lambda: EntryPoints([entry]))
-    assert table.with_registered("dembound.records", Format, TYPES) == (*TYPES, Added)
 
 
 PRISTINE = sorted(SAMPLES.glob("sample*"))
