@@ -566,21 +566,6 @@ def test_strength_is_told_and_written_and_what_falls_ends_with_3(dembound, tmp_p
     assert "no yield acceleration: the body does not stand at full strength" in answer.out
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--strength", "--steps", 5], "--steps: is not for --strength"),
-        (["--strength", "--full", "--title", "x"], "--title: is not for --strength"),
-        (["--tolerance", 0.1], "--tolerance: is for --strength"),
-        (["--strength", "-o", "a.png"], "--output: is a.png, must end in .csv"),
-        (["-o", "a.csv"], "--output: is a.csv, must end in .png"),
-        (["--strength"], 'material.law: is "elastic", under which nothing breaks or slides'),
-    ],
-)
-def test_strength_refuses_what_it_has_no_use_for(dembound, written, options, said) -> None:
-    refused(dembound("stability", written(), *options), said)
-
-
 PLACED = ("gauge.txt", "--position", 0.6, "--length", 0.99)
 
 

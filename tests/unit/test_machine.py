@@ -2,17 +2,14 @@
 
 import os
 import signal
-import subprocess
-import sys
 import tempfile
 import threading
 import time
-from importlib.machinery import ExtensionFileLoader
 from pathlib import Path
 
 import pytest
 
-from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, end_while_loading, look, put_off
+from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, look, put_off
 from dembound.machine import Memory, memory_here, private_folder
 
 GIB = 2.0**30
@@ -54,30 +51,6 @@ def test_the_group_of_a_process_or_one_around_it_limits_its_memory(root) -> None
 
     # pages of files that nobody uses are dropped when others need them: 4 − 2 + 0.5
     assert memory_here(root(**files)) == Memory(4.0 * GIB, 2.5 * GIB)
-
-
-RELEASED = """
-import resource
-import numpy as np
-from pathlib import Path
-from dembound.machine import give_back_at_once
-give_back_at_once()
-def held():
-    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
-np.ones(4_000_000)  # 32 MB: by default the system's library would now keep the pages of all smaller arrays
-before = held()
-arrays = [np.ones(250_000) for _ in range(32)]  # 2 MB each
-last = np.ones(1000)
-del arrays
-print(held() - before)
-"""
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="the C library is that of Linux")
-def test_pages_of_removed_arrays_are_given_back() -> None:
-    left = int(subprocess.run([sys.executable, "-c", RELEASED], capture_output=True, text=True, check=True).stdout)
-
-    assert left < 8e6  # of 64 MB
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="Windows has temporary files for each user")
@@ -164,18 +137,3 @@ def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:
         thread.join()
         look()
     assert seen == [signal.SIGTERM]
-
-
-def test_signals_end_a_process_at_once_while_it_loads_a_library(monkeypatch) -> None:
-    inside = []
-
-    def load(loader: object, spec: object) -> None:
-        inside.append(signal.getsignal(signal.SIGTERM))
-
-    monkeypatch.setattr(ExtensionFileLoader, "create_module", load)
-    end_while_loading()
-    with Interrupts():
-        noting = signal.getsignal(signal.SIGTERM)
-        ExtensionFileLoader("library", "library.so").create_module(None)
-        assert signal.getsignal(signal.SIGTERM) == noting
-    assert inside == [signal.SIG_DFL]

@@ -15,7 +15,7 @@ import pytest
 from dembound.api import case
 from dembound.bar.scene import build_bar
 from dembound.formulas.bars import ends as echoes
-from dembound.formulas.bars.ends import LinearSteps, Returned, returned_of_waves
+from dembound.formulas.bars.ends import returned_of_waves
 from dembound.kinds.bar.summary import bar_facts
 from dembound.motion.simulation import Simulation
 
@@ -121,43 +121,3 @@ def test_a_dashpot_returns_what_it_does():
         assert most <= printed(scene, "right", step) <= 1.1 * most
     said = dict(bar_facts(scene, SPACING / SPEED))["right end"]
     assert said == "viscous, β_P = 1; returns nothing of wave p but rounding errors"
-
-
-def test_tiny_steps_and_long_waves_take_bounded_work(monkeypatch):
-    """Work is counted: bonds times steps, and values that are convolved, for all waves and ends together.
-
-    Of a wave of 500 ways, which is convolved at some nodes only, a dashpot returns nearly as much as at all of them.
-    """
-    work, convolved = [], []
-    after, largest = LinearSteps.after, echoes._largest
-
-    def counted(self, force, motion, steps):
-        work.append(self._gain.size * steps)
-        return after(self, force, motion, steps)
-
-    def seen(motions, signals, last):
-        convolved.append(len(motions[0]) * motions[0].shape[1] + sum(map(len, signals)) * motions[0].shape[1])
-        return largest(motions, signals, last)
-
-    monkeypatch.setattr(LinearSteps, "after", counted)
-    monkeypatch.setattr(echoes, "_largest", seen)
-    unit = SPACING / SPEED
-    scene = build_bar(case(**tables(1, cells=60, ways=2.0, boundary={"right": {"type": "viscous"}})))
-    slow, tiny = (returned_of_waves(scene, "right", courant * unit) for courant in (echoes.LEAST, 1e-7))
-    assert tiny.shares["p"] == pytest.approx(slow.shares["p"], rel=1e-3)
-    short = build_bar(replace(scene.case, wave={"p": scene.case.wave["p"].model_copy(update={"period": 1e-3 * unit})}))
-    assert returned_of_waves(short, "right", 1e-7 * unit) == Returned({}, unknown=("p",))
-
-    long = {"p": {"type": "triangle", "amplitude": 1.0, "rise": unit, "fall": 30_000 * unit}}
-    given = tables(1, cells=60, ways=500.0, boundary={"right": {"type": "viscous"}}, wave=long)
-    whole = returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit)
-    work.clear(), convolved.clear()
-    monkeypatch.setattr(echoes, "KEPT", 4e5)
-    found = returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit)
-    assert whole.part == 1.0
-    assert 9 / 61 <= found.part < 0.5
-    assert sum(work) < echoes.WORK
-    assert sum(convolved) < 4.0 * echoes.KEPT + 2e5
-    assert 0.8 * whole.shares["p"] < found.shares["p"] < 1.001 * whole.shares["p"]
-    monkeypatch.setattr(echoes, "KEPT", 1e5)
-    assert returned_of_waves(build_bar(case(**given)), "right", 0.9 * unit).unknown == ("p",)

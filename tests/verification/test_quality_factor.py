@@ -101,16 +101,6 @@ def test_noise_grows_only_above_the_step_limit(sides: str) -> None:
     assert short_run(trial, 1.002 * trial.limit).is_growing
 
 
-def test_noise_decays_for_long() -> None:
-    """By rounding it keeps some 1e-16 of the velocities by which disks vibrate, not of energies."""
-    trial = trials_of_disks(case(SMALL | {"boundary": {}, "wave": {}}), full=True)[0][0]
-    simulation = Simulation(trial.scene, trial.step)
-    simulation.state.velocity = noise = trial.noise()
-    simulation.run(100_000)
-
-    assert np.abs(simulation.state.velocity).max() < 1e-12 * np.abs(noise).max()
-
-
 @pytest.mark.parametrize("sides", ["free_field", "outside"])
 def test_a_settled_body_stays_at_rest_and_its_twins_move_as_it_does(sides: str) -> None:
     bottom = {"type": "viscous"} if sides == "free_field" else {"type": "outside"}

@@ -1,12 +1,10 @@
 """Sums of causes: totals relative to disks and rock, upper bounds, bands, corrections, texts."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from dembound.accuracy.budget import Budget
-from dembound.accuracy.table import WHAT, lines_of, next_step
+from dembound.accuracy.table import WHAT, lines_of
 from dembound.formulas.cause import SIDES, Cause, Causes
 from dembound.formulas.history import History
 
@@ -100,20 +98,3 @@ def test_every_monitor_has_a_row_and_each_truth_a_total():
         "a note",
         "not estimated: motion after 3 s",
     ]
-
-
-def test_bounds_and_what_is_unknown_are_marked():
-    bound = ("law", "by a bound", 0.3, "bound", False)
-    found = lines_of(budget_of([("sides", "why not", float("nan"), "unknown", False), bound], ["a"]))
-    assert found[1:4] == ["monitor      law  whole  at most", "a        <= 30 %      ?        ?", "law: by a bound"]
-    assert "not estimated: sides, why not" in found
-
-
-def test_what_to_do_next_names_the_largest_cause_where_the_error_is_large():
-    folder, case = Path("results/my run"), Path("run.toml")
-    found = budget_of([("sides", "words", 0.02, "companion", False), ("grid", "words", 0.03, "formula", False)])
-    said = "next: most is by grid, at P1; less with dembound advise"
-    assert next_step(found, folder, case) == f"{said} run.toml --error 1%"
-    assert next_step(found, folder, None) == f"{said} CASE --error 1%"
-    assert "error is below 1 %" in next_step(budget_of([("sides", "words", 0.007, "formula", False)]), folder, case)
-    assert next_step(Budget({}, Causes([])), folder, case) == "next: dembound report 'results/my run'"

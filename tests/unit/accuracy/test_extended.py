@@ -132,26 +132,6 @@ def test_where_waves_enter_a_side_stays_and_is_named(bar) -> None:
         extended(bar({"boundary": {"left": BASE}}))
 
 
-def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
-    sides = around("free_field", "left", "right") | {"bottom": BASE}
-    plain = {**FIELD, "boundary": sides, "run.duration": 0.03}
-    without, hollow = (bar({**plain, **changes}) for changes in ({}, {"hole": [HOLE]}))
-
-    assert extended(without).case is without  # the column moves like the ground
-    assert extended(hollow).case.packing.extent[0] > 10.0
-    assert extended(hollow).case.packing.extent[1] == 5.0
-
-
-def test_a_hole_over_a_side_that_moves_is_refused(field) -> None:
-    valley = {"name": "valley", "type": "rectangle", "corners": [-1.0, 3.0, 2.0, 6.0]}
-    moved = {"monitor": [{"name": "a", "position": [5.0, 1.0]}], "load": []}
-    moved["boundary"] = {"left": {"type": "viscous"}, "right": {"type": "velocity", "wave_p": "pulse"}}
-
-    with pytest.raises(CaseError, match=r"^hole\.valley: reaches the left side"):
-        extended(field({**moved, "hole": [valley]}))
-    extended(field({**moved, "hole": [{**valley, "corners": [8.0, 3.0, 12.0, 6.0]}]}))  # over a side that stays
-
-
 def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
     method = {"type": "finite_difference"}
     case = spalling({"boundary.right": {"type": "viscous"}, "method": method, "run.duration": 4e-3})

@@ -1,7 +1,6 @@
 """Repeated runs with cracks: common cracks of both, and equality of their problems."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -12,7 +11,7 @@ from small_cases import PUSHED, TORN, small
 from dembound.accuracy import repeat
 from dembound.accuracy.estimate import estimate_results
 from dembound.accuracy.repeat import Cracked, Repeat, repeated
-from dembound.errors import CaseError, RunError
+from dembound.errors import RunError
 from dembound.running import run_case
 from dembound.running.recorded import recorded_case
 
@@ -96,24 +95,3 @@ def test_a_repeat_that_fails_leaves_the_results_as_they_are(torn, beside, monkey
 
     assert not any(beside.iterdir())
     assert {path: path.read_bytes() for path in torn.iterdir() if path.is_file()} == before
-
-
-def test_without_a_repeat_many_cracks_are_said_to_be_one_draw(torn) -> None:
-    *_, note = estimate_results(torn).summary()["notes"]
-    assert note.startswith(f"{len(Cracked.of(torn / 'run.h5'))} bonds break: which ones")
-    assert "--repeat" in note
-    assert list(cracked([0.0] * 10).one_draw()) == []
-    assert len(list(cracked([0.0] * 11).one_draw())) == 1
-    assert list(replace(cracked([0.0] * 11), in_bar=True).one_draw()) == []  # several bonds break at one place
-
-
-def test_many_cracks_need_no_monitor_but_a_repeat_needs_cracks(torn, tmp_path) -> None:
-    changes = BREAKING | {"monitor": [], "output.estimate": False}
-    folder = run_case(small(PUSHED, "silent", changes), tmp_path)
-    found = estimate_results(folder, repeat=True)
-
-    assert found.repeat.changes == {}
-    assert found.summary()["not_estimated"] == ["has no monitor whose error could be estimated"]
-    folder = run_case(small(PUSHED, "whole", {"output.pictures": False, "run.duration": 0.002}), tmp_path)
-    with pytest.raises(CaseError, match="has no broken bonds"):
-        estimate_results(folder, repeat=True)

@@ -115,22 +115,6 @@ def test_a_name_of_another_code_is_answered_by_what_to_write(path: str, key: str
     assert "did you mean" not in line
 
 
-def test_a_name_that_other_codes_have_in_several_tables_is_answered_by_the_keys_of_each() -> None:
-    hole = {"name": "h", "type": "circle", "centre": [5.0, 1.0], "radius": 1.0, "diameter": 2.0}
-    wave = {"type": "ricker", "amplitude": 1.0, "frequency": 5.0, "stress": 1.0}
-    for tables, said in (
-        (
-            PUSHED | {"boundary": {"right": {"type": "viscous", "stress": 1.0}}},
-            "give wave_p or wave_s a wave of the in",
-        ),
-        (PUSHED | {"hole": [hole]}, "write radius, m"),
-        (PUSHED | {"wave": PUSHED["wave"] | {"w": wave}}, "write amplitude, m/s"),
-        (SPALLING | {"quiet": {}}, "each end has a type"),
-        (SPALLING | {"walls": {}}, "allowed: title, bar"),
-    ):
-        assert any(f"; {said}" in line for line in problems(tables)), said
-
-
 def test_only_a_near_key_is_guessed() -> None:
     for key in ("stiffnes_of_all", "colour", "kz", "dampened", "pbx"):
         line = about(DISKS, "material", key)
@@ -163,14 +147,6 @@ def test_every_advice_names_keys_and_types_that_there_are() -> None:
                 assert (DOCS / f"{page}.md").is_file()
     assert set(TYPE_OF.values()) <= known
     assert len(BY_NAME) == sum(map(len, NAMES))  # no name has two answers
-
-
-def test_a_type_of_another_code_is_answered_by_the_type_here() -> None:
-    ends = {"quiet": '(here "viscous")', "PML": '(here "outside")', "viscos": "(did you mean viscous?)", "soft": '"'}
-    for side, said in ends.items():
-        (line,) = problems(PUSHED | {"boundary": {"right": {"type": side}}})
-        assert line.startswith(f'boundary.right.type: is "{side}", must be one of ')
-        assert line.endswith(said)
 
 
 SHIPPED = sorted((Path(__file__).parents[3] / "cases").rglob("*.toml"))

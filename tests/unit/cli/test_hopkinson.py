@@ -52,24 +52,6 @@ def test_a_test_is_evaluated_from_the_record_of_a_run(dembound, tmp_path) -> Non
     assert (wrong.code, wrong.err) == (2, "--column: is missing, must be one of back, front in run.h5\n")
 
 
-def test_options_without_meaning_are_bad_input(dembound, tmp_path) -> None:
-    given = signals()
-    write(tmp_path / "incident.csv", given, given.incident)
-    write(tmp_path / "transmitted.csv", given, given.transmitted)
-    for options, said in (
-        (("--specimen-area", 1e-4), "--specimen-diameter: is needed, or --specimen-area, but not both\n"),
-        (("--bar-length", 0.9), "--incident-gauge: is 1 m, must be below the length of the bar, 0.9 m\n"),
-        (("--gain", 2), "--gauge-factor: is missing, --bridge, --excitation and --gain need it\n"),
-        # other units
-        (("--bar-diameter", 20), "--bar-diameter: is 20 m, where bars have 1e-05 to 5; likely in mm: write 0.02 or"),
-        (("--specimen-diameter", 0.021), "--specimen-diameter: must be at most that of the bars; lengths are in m\n"),
-        (("--unit", "strain"), "incident.csv: the largest strain is 1002"),
-    ):
-        code, _, told = dembound("hopkinson", "incident.csv", *TEST, *options)
-        assert (code, told.count("\n")) == (2, 1)
-        assert told.startswith(said)
-
-
 def test_a_gauge_has_its_columns_units_and_filters(dembound, tmp_path) -> None:
     time, values = signal().T
     values = noise(0.005)(time, values) + 0.1 * np.sin(2e6 * time) + 0.3

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 import tomli_w
-from small_cases import GRAINS, PUSHED, SOIL, small
+from small_cases import GRAINS, PUSHED, small
 
 from dembound.kinds import loads
 from dembound.running import run_case
@@ -61,20 +61,6 @@ def test_a_lattice_breaks_at_the_strength_of_its_bonds(dembound, done) -> None:
     assert summary["ratios"][0]["value"] == pytest.approx(10.0 * STRENGTH / strength)
 
 
-def test_options_that_have_no_effect_or_no_meaning(dembound) -> None:
-    Path("rock.toml").write_text(small(LATTICE).text, encoding="utf-8")
-
-    for options, message in (
-        (["ucs", "--pressures", "1e6"], "--pressures: is for biaxial"),
-        (["biaxial", "--pressures", "1e6,1e6"], "--pressures: is 1e+06,1e+06, must be different finite numbers"),
-        (["ucs", "--width", "0"], "--width: is 0, must be more than 0"),
-        (["ucs", "--seeds", "2"], "--seeds: all samples of this pattern are the same"),
-    ):
-        answer = dembound("test", options[0], "rock.toml", *options[1:])
-        assert answer.code == 2
-        assert message in answer.err
-
-
 def test_strengths_asked_for_are_written_with_the_comments_of_the_case(dembound, monkeypatch) -> None:
     text = "# my rock\n" + small(LATTICE).text.replace("pb_ten = 500000.0", "pb_ten = 5e5  # to be found")
     Path("rock.toml").write_text(text, encoding="utf-8")
@@ -116,12 +102,3 @@ def test_a_body_has_the_moduli_asked_for(dembound, tmp_path) -> None:
     assert 0.0 < high / low - 1.0 <= found["anisotropy"]["p"]
     crack = found["first_crack"]
     assert crack["compression"]["stress"] < -crack["tension"]["stress"] < 0.0
-
-
-def test_each_layer_has_its_own(dembound, tmp_path) -> None:
-    (tmp_path / "soil.toml").write_text(tomli_w.dumps(SOIL))
-    found = json.loads(dembound("material", "soil.toml", "--json").out)
-    assert [each["layer"] for each in found] == ["clay", "sand", "rock"]
-    assert [each["speeds"]["y"]["s"] for each in found] == pytest.approx([200.0, 350.0, 700.0])
-    assert [each["speeds"]["lattice"]["s"] for each in found] == pytest.approx([200.0, 350.0, 700.0])
-    assert found[0]["first_crack"] == {"compression": None, "tension": None}

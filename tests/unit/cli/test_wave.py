@@ -42,19 +42,6 @@ def test_a_record_becomes_waves_that_a_case_reads(dembound, recorded, tmp_path) 
         assert [velocity for _, _, velocity in wave.ends()] == [0.0, 0.0]
 
 
-def test_a_component_is_cut_scaled_and_named(dembound, recorded, tmp_path) -> None:
-    options = ("--component", "ns", "--from", 10, "--to", 30, "--baseline", "linear", "--low-pass", 25, "--pga", 2)
-    answer = dembound("wave", recorded, *options, "-o", "base.csv", "--picture", "drawn.png")
-    assert answer.code == 0
-    row = next(line.split() for line in answer.out.splitlines() if line.startswith("NS"))
-    assert row[1:4] == ["2001", "100", "2"]
-    assert {path.name for path in tmp_path.iterdir()} == {"record.csv", "base.csv", "drawn.png"}
-    times = np.loadtxt(tmp_path / "base.csv", delimiter=",", skiprows=sum(
-        line[0] in "#t" for line in (tmp_path / "base.csv").read_text(encoding="utf-8").splitlines()
-    ))[:, 0]  # fmt: skip
-    assert (times[0], times[-1]) == pytest.approx((0.0, 20.0))
-
-
 def test_what_does_not_fit_is_refused_and_nothing_written(dembound, recorded, tmp_path) -> None:
     for options, problem in (
         (("--component", "UD"), "--component: is UD, must be one of NS, EW"),

@@ -56,14 +56,6 @@ def test_a_constant_delay_is_taken_out_of_the_record():
     assert abs(displacement[-1, 0]) < 1e-4
 
 
-def test_motion_that_no_wave_can_carry_is_an_error_as_large_as_itself():
-    record = pulse(TIMES)[:, None]
-    velocity, _ = error_of_delay(TIMES, record, lambda omega: np.full_like(omega, np.nan))
-    np.testing.assert_allclose(velocity, record, atol=1e-9)
-    for error in error_of_delay(TIMES, record, np.zeros_like):  # and without a delay there is none
-        np.testing.assert_allclose(error, 0.0, atol=1e-12)
-
-
 @pytest.mark.parametrize(("last", "off"), [(2.4, 0.1), (2.0, 0.3)], ids=["on a slope", "on a bend"])
 def test_a_record_may_end_within_a_wave(last, off):
     """A delay τ = κω² adds κ times the third derivative, and κ²/2 times the sixth, below 1 % of it here.
@@ -99,12 +91,6 @@ def test_steps_make_velocities_smaller_and_displacements_larger():
     assert np.ptp(drift[inside]) < 0.04 * step**2 / 24.0
 
 
-LONG = {
-    "packing.size": [100.0, 1.0],
-    "boundary.left": {"type": "velocity", "wave_p": "pulse"},
-    "run.duration": 0.4,
-    "monitor": [{"name": "near", "position": [20.25, 0.75]}, {"name": "far", "position": [90.25, 0.75]}],
-}
 BLOW = {"name": "blow", "force": [1e5, 0.0], "position": [30.25, 30.25], "wave": "pulse"}
 COLUMN = {"packing.size": [60.0, 60.0], "motion.held": [], "load": [BLOW], "run.duration": 0.2} | {
     "boundary": around("free_field", "left", "right") | around("viscous", "bottom"),
@@ -114,15 +100,6 @@ COLUMN = {"packing.size": [60.0, 60.0], "motion.held": [], "load": [BLOW], "run.
 
 def lines(case):
     return dict(echoes(plan(case)))
-
-
-def test_the_first_monitor_that_an_echo_comes_to_is_named(bar) -> None:
-    # 100 m there and 9.75 m back at 1000 m/s, a little earlier by what runs ahead on a lattice
-    assert lines(bar(LONG)) == {"echoes": "right (viscous) may reflect to far from 0.11 s on"}
-    assert lines(bar({**LONG, "run.duration": 0.1})) == {}
-    assert lines(bar({**LONG, "monitor": []})) == {}
-    layer = {"type": "velocity", "wave_p": "pulse"}
-    assert lines(bar({**LONG, "boundary": {"left": layer}})) == {}  # a free end is no artificial side
 
 
 def test_columns_send_back_the_waves_of_local_sources_only(bar) -> None:

@@ -130,23 +130,6 @@ def test_it_is_that_of_the_matrix_without_what_is_held(held: int) -> None:
     assert -rounding <= found / exact - 1.0 <= TOLERANCE
 
 
-@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
-def test_any_number_of_threads_gives_the_same_bits() -> None:
-    layout, mass, stiffness = scene()
-    moves, found, allowed = np.ones((3, NODES), dtype=np.bool_), [], numba.get_num_threads()
-
-    def fill(u: np.ndarray, force: np.ndarray) -> None:
-        force[:2, layout.slot] = (-stiffness @ layout.gather(u)[:2].ravel()).reshape(2, NODES)
-
-    try:
-        for threads in (1, 2):
-            numba.set_num_threads(threads)
-            found.append(largest_eigenvalue(layout, mass, mass, FREE, moves, fill))
-    finally:
-        numba.set_num_threads(allowed)
-    assert found[0] == found[1]
-
-
 def test_a_section_within_another_does_not_count_for_that_one(monkeypatch) -> None:
     """Of times at which sections begin and end, with 2 s and 8 s within others, and 16 s between them."""
     times = iter([0.0, 1.0, 3.0, 7.0, 15.0, 15.0, 31.0, 63.0])

@@ -12,11 +12,8 @@ from dembound.results.reader import (
     history_of,
     open_record,
     side_energies_of,
-    snapshot_of,
-    snapshots_of,
 )
 from dembound.results.recording import LoadingCurve
-from dembound.results.results import Results
 
 
 def test_the_history_of_an_interrupted_run_ends_where_both_columns_do(small_run, tmp_path):
@@ -56,16 +53,6 @@ def test_numbers_that_are_not_finite_are_refused(small_run, tmp_path, column: st
         reason = f"{column} has a number that is not finite in row 3"
         with pytest.raises(RecordError, match=reason), open_record(path) as file:
             read(path, file)
-
-
-def test_more_than_ten_thousand_snapshots_are_in_the_order_of_time(long_run):
-    with open_record(long_run) as file:
-        first, last = snapshots_of(file)
-        assert (first.name, last.name) == ("/snapshots/9999", "/snapshots/10000")
-        assert first.attrs["time"] < last.attrs["time"]
-        assert snapshot_of(file, -1) == last
-    times = [each.attributes["time"] for each in Results(long_run).snapshots]
-    assert times == sorted(times)
 
 
 def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):

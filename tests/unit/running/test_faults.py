@@ -283,29 +283,6 @@ def test_a_record_that_lacks_any_part_is_not_continued(folder, tmp_path) -> None
     assert resume_case(folder, until=0.03).name == "bar"
 
 
-def test_a_record_with_other_numbers_is_not_continued(folder, tmp_path) -> None:
-    folder = folder.rename(tmp_path / "bar.partial")
-    whole = (folder / "run.h5").read_bytes()
-    speed = "histories/gauge/velocity"
-    for part, change, reason in (
-        (speed, lambda values: values[:3], f"it lacks .* rows in {speed}, it has"),
-        (speed, lambda values: np.full_like(values, np.nan), "velocity has a number that is not"),
-        ("particles/volume", lambda values: values[1:], "it lacks particles/volume as this case records it"),
-    ):
-        with h5py.File(folder / "run.h5", "a") as file:
-            file.attrs["complete"] = False  # its columns may then differ in length
-            old, values, grows = file[part], change(file[part][()]), file[part].maxshape[0] is None
-            unit = old.attrs["unit"]
-            del file[part]
-            shape = (None, *values.shape[1:]) if grows else None
-            file.create_dataset(part, data=values, maxshape=shape).attrs["unit"] = unit
-        before = contents(tmp_path)
-        with pytest.raises(RecordError, match=reason):
-            resume_case(folder, until=0.03)
-        assert contents(tmp_path) == before
-        (folder / "run.h5").write_bytes(whole)
-
-
 def test_a_checkpoint_of_another_version_is_refused(tmp_path, monkeypatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr("dembound.results.checkpoint.__version__", "0.0.1")

@@ -1,12 +1,9 @@
 """Calibration: what is modelled, how one factor and all of a case are found, what is refused."""
 
-from dataclasses import replace
-
 import h5py
 import pytest
 
-from dembound.boundaries.viscous import Viscous
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError
 from dembound.results.reader import text_of
 from dembound.studies import calibration as module
 from dembound.studies.all_sides import calibrate_all, changes_of, factors_of, summary_of
@@ -65,16 +62,6 @@ def test_a_factor_has_the_digits_that_are_known(beta, ratio, digits) -> None:
     assert known(beta, ratio) == digits
 
 
-def test_of_identical_rows_one_is_stepped(long_bar) -> None:
-    how = Calibrating()
-    found, expected = (calibrate(long_bar({"reduce.rows": rows}), "right", how) for rows in (True, False))
-
-    (saved,) = set(found.shortened) - set(expected.shortened)
-    assert saved.startswith("rows: 2 identical rows are stepped as one")
-    assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)  # a mean of equal peaks
-    assert (found.particles, found.steps) == (expected.particles, expected.steps)
-
-
 def test_other_sides_keep_their_supports_but_not_their_waves(long_bar) -> None:
     absorbing = {"beta_s": 0.3, "half_mass": True}
     driven = {"type": "viscous_input", "wave_s": "pulse", **absorbing}
@@ -100,14 +87,6 @@ def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar
     found, expected = (calibrate(long_bar(changes), "right", how) for changes in (busy, plain))
     assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
     assert found.shortened == [*expected.shortened, "no holes", "no static stage", "no loads", "the elastic law"]
-
-
-def test_s_waves_are_taken_where_p_motion_is_held_or_only_s_waves_come(long_bar) -> None:
-    for held in (["x"], []):
-        found = calibrate(long_bar({"motion.held": held, "boundary.left": SHEAR}), "right")
-        assert (found.motion, found.factor) == ("s", "beta_s")
-        # touching equal disks once more; rotations disperse S waves a little more than P
-        assert found.result == pytest.approx(1.0, abs=5e-3)
 
 
 def test_the_homogenised_factor_needs_no_run(long_bar) -> None:
@@ -186,24 +165,6 @@ def test_sides_are_calibrated_by_their_dashpots_from_the_cases_own_factor(
     assert found.shortened == [*expected.shortened, without]
 
 
-def test_half_masses_and_the_strength_of_the_cases_own_wave_stay(long_bar) -> None:
-    half, whole = (calibrate(long_bar({"boundary.right.half_mass": triggers}), "right") for triggers in (True, False))
-    # with steps near the limit a half mass leaves no error in the end, a whole one shifts the peak
-    assert half.ratio[0] != whole.ratio[0]
-
-    step = {"wave": {"pulse": {"type": "constant", "amplitude": 0.5}}}  # without a crest
-    for changes, incident in (({"wave.pulse.amplitude": -0.25}, 0.25), (step, 1.0)):
-        assert calibrate(long_bar(changes), "right", Calibrating(tolerance=1.0)).incident == incident
-
-
-class Sprung(Viscous):
-    """Dashpots and springs, without a word on how the dashpots are alone."""
-
-    def support(self, edge, medium, waves, supports) -> None:
-        super().support(edge, medium, waves, supports)
-        supports.add(edge.nodes, 0, stiffness=1e6 * edge.diameters)
-
-
 @pytest.mark.parametrize(
     ("side", "options", "said"),
     [
@@ -217,18 +178,6 @@ class Sprung(Viscous):
 def test_what_cannot_be_calibrated_is_refused(long_bar, side: str, options: dict, said: str) -> None:
     with pytest.raises(CaseError, match=said):
         calibrate(long_bar({"boundary.bottom": {"type": "fixed"}}), side, **options)
-
-
-def test_scenes_too_short_springs_that_stay_and_too_many_passes_are_refused(bar, long_bar, monkeypatch) -> None:
-    with pytest.raises(CaseError, match=r"--full: the scene is 10 m long, echoes need 17\.5 m"):
-        calibrate(bar({"wave.pulse.period": 0.05}), "right", Calibrating(full=True))
-    monkeypatch.setattr(module, "MOST_PASSES", 2)
-    with pytest.raises(RunError, match=r"right did not converge in 2 passes: M_out/M_in = 1\.\d+ at beta_p = 0\.\d+"):
-        calibrate(long_bar(), "right", Calibrating(start=0.5, method="ratio"))
-    case = long_bar()
-    sprung = replace(case, boundary={**case.boundary, "right": Sprung(type="viscous")})
-    with pytest.raises(CaseError, match=r"boundary\.right\.type: \"viscous\" still has springs .* dashpots_alone\(\)"):
-        calibrate(sprung, "right")
 
 
 DASHPOTS = {

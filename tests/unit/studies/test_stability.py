@@ -72,15 +72,6 @@ def test_noise_does_not_turn_a_free_body() -> None:
     assert np.abs(velocity).min() > 0.0
 
 
-def test_columns_are_measured_alone() -> None:
-    sides = {"boundary.left": {"type": "free_field"}, "boundary.right": {"type": "free_field"}}
-    case = with_changes(loads(ROW), {"packing.size": [3.0, 5.0], "motion.held": [], **sides})
-    (found,), _ = measure(case, steps=500)
-
-    assert [run.part for run in found.long_runs] == ["column", "body"]
-    assert found.is_stable
-
-
 @pytest.fixture
 def trial(bar):
     """The first trial of the small bar with keys changed, with springs and dashpots on the right."""

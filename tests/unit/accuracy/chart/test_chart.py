@@ -103,26 +103,6 @@ def test_all_choices_are_valid_whatever_step_the_bar_has(spalling, step) -> None
     assert steps == {(1.0, "auto", 0.9), (None, "auto", step.get("safety", 0.9))}
 
 
-def test_methods_have_the_keys_of_the_case_which_counts_once(spalling) -> None:
-    case = spalling({"method": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True}})
-    methods = {changes["method"]["type"]: changes["method"] for changes in list(defaults(case).values())[1:]}
-    assert methods == {
-        "finite_difference": {"type": "finite_difference"},
-        "peridynamics": {"type": "peridynamics", "horizon": 5, "corrected_ends": True},
-        "switch": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True},
-        "patch": {"type": "patch", "horizon": 5, "trigger": 0.8},
-    }
-    # methods that wait for a break are for bars that can break
-    whole = with_changes(spalling(), {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1e3}})
-    types = {changes["method"]["type"] for changes in list(defaults(whole).values())[1:]}
-    assert types == {"finite_difference", "peridynamics"}
-    method = {"type": "peridynamics", "horizon": 2, "corrected_ends": True}
-    own = spalling({"method": method, "run": {"duration": 1.5e-3}})
-    choices, _ = choices_of(own, defaults(own))
-    assert choices[0].name == "as in the case"
-    assert len([choice for choice in choices if choice.case.method == own.method]) == 3  # one for each spacing
-
-
 @pytest.mark.parametrize(
     ("points", "expected"),
     [

@@ -7,16 +7,13 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.accuracy.chart import references as reference
 from dembound.accuracy.chart import study
 from dembound.accuracy.chart.study import Options, chart
 from dembound.accuracy.chart.tables import COLUMNS, write_results, write_table
 from dembound.accuracy.choice import choices_of, combinations
-from dembound.accuracy.of_bars.judge import BarJudge
 from dembound.accuracy.of_disks.judge import REALISATIONS, DiskJudge
 from dembound.accuracy.reference import Requested
 from dembound.errors import CaseError, RunError
-from dembound.motion.kind import Finding
 from dembound.running import Progress
 
 SPACINGS = {"bar.spacing": [0.05, 0.025]}
@@ -170,14 +167,6 @@ def test_random_packings_are_realisations_but_boxes_elsewhere_have_the_same_bric
     cases = [choice.case for choice in choices]
     assert DiskJudge().cautions(cases[:2]) == ()
     assert len(DiskJudge().cautions(cases)) == 1
-
-
-def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
-    broken = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
-    assert reference._from_own_end(broken, -8.0, DiskJudge.from_left_end) == broken  # disks stay at their places
-    spall = {"spall time": Finding(0.1, "s"), "spall place": Finding(1.5, "m")}
-    found = reference._from_own_end(spall, 1.0, BarJudge.from_left_end)
-    assert [value for value, _ in found.values()] == [0.1, 0.5]
 
 
 def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:

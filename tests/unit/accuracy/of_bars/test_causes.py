@@ -60,21 +60,6 @@ def test_estimated_errors_are_the_true_ones(name: str) -> None:
             assert row.estimate < 1.1e-3, row
 
 
-def test_a_bar_and_its_mirror_image_have_the_same_errors() -> None:
-    case = scene("matched layer, m = 3")
-    mirrored = {
-        "load.hit.side": "right",
-        "boundary": {"left": case.boundary["right"].given()},
-        "monitor.near.position": 0.8,
-        "monitor.far.position": 0.2,
-    }
-    own, image = (Budget(*estimated(each)) for each in (case, with_changes(case, mirrored)))
-
-    for monitor in own.motions:
-        for quantity in own.quantities(monitor):
-            assert image.shares(monitor, quantity) == pytest.approx(own.shares(monitor, quantity), rel=1e-6)
-
-
 def test_a_load_that_stays() -> None:
     # The body goes on beyond the record, ever faster without an absorbing end, and must not come in again. The exact
     # motion, from samples an eighth of a step apart, misses each of up to four jumps in 335 steps by half of it for an

@@ -1,12 +1,11 @@
 """The time of companions: said before they run, as long as what is run takes, and refused in one line above a limit."""
 
 import pytest
-from plane_motion import recorded
 from small_cases import Tables, around, small
 
 from dembound.accuracy.of_disks import affordable
 from dembound.accuracy.of_disks.affordable import require_short, seconds_of_all
-from dembound.accuracy.of_disks.causes import causes_of_run, ground_causes, sides_cause
+from dembound.accuracy.of_disks.causes import ground_causes, sides_cause
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.proposal import Watch
 from dembound.casefile.disks import DiskCase
@@ -76,18 +75,3 @@ def test_their_sizes_are_said_before_and_too_long_ones_are_refused_unless_an_opt
     for own, longest in ((40.0, None), (0.1, 35.0)):  # as long as the case, and as allowed
         require_short(companions, own, longest, told)
     assert companions.runner.count == 0
-
-
-@pytest.mark.parametrize("tables", [HELD, SLIDING], ids=["elastic", "contacts"])
-def test_an_estimate_without_its_companions_says_what_allows_them(monkeypatch, tables: Tables) -> None:
-    case = small(tables, changes={"run.duration": 0.05})
-    motions, step, told = recorded(case), plan(case).time_step, Told()
-    monkeypatch.setattr(affordable, "seconds_of_all", lambda _: 34.4)
-    found = causes_of_run(case, motions, step, 1.0, 1.0, told)
-    lacking = {cause.name for cause in found.unknown}
-    assert lacking == {"sides", "bottom side", "places"} | ({"time step"} if tables is SLIDING else set())
-    assert all("dembound estimate --longest 35 allows it" in cause.words for cause in found.unknown)
-    assert not told.said
-    if tables is HELD:
-        assert not causes_of_run(case, motions, step, 1.0, 1.0, told, longest=35.0).unknown
-        assert len(told.said) == 1

@@ -1,12 +1,10 @@
 """Errors by disks at other places than the monitors', compared with the exact plane wave in a bar."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from plane_motion import in_plane, recorded
 from scene_tables import grains, monitors
-from small_cases import GRAINS, OPEN, PUSHED, SOIL, Tables, around, small
+from small_cases import GRAINS, PUSHED, SOIL, Tables, around, small
 
 from dembound.accuracy import runner
 from dembound.accuracy.estimate import causes_of
@@ -22,7 +20,6 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.formulas.cause import STEP
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.reflections import Reflections
 from dembound.formulas.history import History, earlier
 from dembound.kinds import with_changes
 from dembound.results.compare import relative_error
@@ -198,30 +195,6 @@ def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them
     # layers of whole cells of the largest disks
     thin = small(COLUMN, changes={"layer.sand.thickness": 0.75, "run.duration": 0.01})
     assert coarser(thin, build(thin), 1e-4, 0.3).case.joints[0] == pytest.approx(8.5)
-
-
-def test_a_side_reflects_as_the_mean_of_its_layers() -> None:
-    scene = build(small(LATTICE | OPEN))
-    alone = {}
-    for number, height in enumerate((10.0, 6.0, 1.0)):
-        one = scene.case.uniform_at(height)
-        alone[number] = Reflections().of(build(one), "left", 1e-4)["s"].size
-    shares = np.array([4.0, 4.5, 4.0]) / 12.5
-    mean = np.sqrt(shares @ np.square(list(alone.values())))
-    # disks of 0.25 m, of which layers have whole numbers
-    assert Reflections().of(scene, "left", 1e-4)["s"].size == pytest.approx(mean, rel=1e-6)
-    assert min(alone.values()) < 0.9 * mean
-
-
-def test_what_is_known_of_uniform_ground_alone_is_not_used() -> None:
-    held = COLUMN["boundary"] | {"bottom": {"type": "velocity", "wave_s": "in"}}
-    scene = build(small(LATTICE | {"boundary": held}))
-    (side,) = Formulas(scene, 1e-4).held_sides.causes({})
-    assert side.how == "unknown"
-    jumping = small(LATTICE, changes={"wave.in": {"type": "constant", "amplitude": 1.0, "start": 0.1}})
-    with pytest.raises(CaseError, match="continuous"):
-        judge_of(jumping).exact(jumping)
-    assert judge_of(scene.case).exact(replace(scene.case, layer=())) is None
 
 
 TIME = np.linspace(0.0, 1.0, 21)

@@ -14,7 +14,6 @@ from dembound.casefile import Case
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.exact import PlaneWave, Solid, buried_displacement, cavity_motion, scattered_motion
-from dembound.kinds import with_changes
 
 ALL = ("left", "right", "bottom", "top")
 SLOW = ISOTROPIC | {"p_wave_speed": 300.0}
@@ -63,21 +62,6 @@ def test_other_problems_are_refused_and_leave_nothing(tmp_path, changes, message
     with pytest.raises(CaseError, match=message):
         write_exact(small(LAMB, changes=changes), tmp_path / "new" / "run.h5")
     assert not list(tmp_path.iterdir())
-
-
-def test_monitors_in_the_continuum_are_on_the_same_surface(tmp_path) -> None:
-    """The load is nearer to the sides of a small body than to the monitors, without effect, as the ground goes on."""
-    beyond = {"boundary": around("outside"), "outside": {"element": 5.0, "margin": 2}, "packing.size": [5.0, 5.0]}
-    places = {"monitor": monitors(before=(-5.25, 4.75), behind=(6.75, 4.9)), "load.hammer.position": [0.75, 4.75]}
-    case = small(LAMB, changes=beyond | places)
-    _, before, behind = histories(tmp_path / "run.h5", case)
-    np.testing.assert_allclose(before, behind * [-1.0, 1.0, 1.0], atol=1e-9 * np.abs(behind).max())
-    with h5py.File(tmp_path / "run.h5") as file:
-        attributes = file["histories/behind"].attrs
-        assert attributes["particle"] == -1
-        np.testing.assert_allclose(attributes["position"], [6.75, 4.75], atol=1e-12)
-    with pytest.raises(CaseError, match=r"monitor\.behind\.position: must be on the top of the scene"):
-        write_exact(with_changes(case, {"monitor.behind.position": [6.75, 2.0]}), tmp_path / "run.h5")
 
 
 BLAST = {"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}

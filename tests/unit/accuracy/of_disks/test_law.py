@@ -9,7 +9,6 @@ from plane_motion import recorded
 from small_cases import PUSHED, around, small
 
 from dembound.accuracy.estimate import advise
-from dembound.accuracy.judge import judge_of
 from dembound.accuracy.of_disks.law import RESERVE, ElasticTwin, elastic_twin
 from dembound.accuracy.runner import SHORT, Runner
 from dembound.casefile.disks import DiskCase
@@ -57,22 +56,6 @@ def test_the_elastic_law_replaces_another_that_is_never_needed() -> None:
     assert twin_of(confined({"wave.push.amplitude": 1.1 * twin.factor})) is None  # larger waves leave it
 
 
-def test_strengths_that_scatter_count_as_the_weakest() -> None:
-    """Factors are cut off at 1 − 3 × 0.1, and one of 1,900 bonds is within a percent or two of that."""
-    bonds_only = {"static": None, "material.contact_share": 0.0}
-    scatter = {"material.pb_scatter": {"type": "normal", "deviation": 0.1}}
-    given, scattered = twin_of(confined(bonds_only)), twin_of(confined(bonds_only | scatter))
-    assert scattered.case == given.case  # without strengths
-    assert 0.7 < scattered.factor / given.factor < 0.73
-
-
-def test_the_load_factor_is_recommended_where_the_case_takes_it() -> None:
-    still = confined({"material.law": "elastic", "material.pb_ten": None, "material.pb_coh": None})
-    damped = with_changes(still, {"material.quality_factor": 20.0, "damping": {"band": [10.0, 100.0]}})
-    found = ["output.load_factor" in "".join(judge_of(case).notes(case, {})) for case in (still, damped)]
-    assert found == [True, False]
-
-
 def test_with_larger_disks_more_is_needed() -> None:
     few = 2000.0  # particle-steps, less than the largest disks take that resolve the wave
     larger = twin_of(confined({"wave.push.amplitude": 0.1}), most=few)
@@ -99,21 +82,6 @@ def test_with_larger_disks_more_is_needed() -> None:
 )
 def test_where_it_is_not_known_the_law_remains(changes: dict[str, Any]) -> None:
     assert twin_of(confined(changes)) is None
-
-
-def test_a_kept_law_remains() -> None:
-    assert twin_of(confined(), kept=("material",)) is None
-    assert twin_of(confined(), kept=("material.pb_ten",)) is None
-    settled = twin_of(confined(), kept=("static.stress", "material.density"))
-    assert settled.case.static == confined().static
-
-
-def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
-    fixed = {"run.time_step": 0.9 * plan(own_twin().case).time_step}
-    settled = with_changes(own_twin().case, {"static": CONFINED["static"], **fixed})
-    without = with_changes(own_twin().case, fixed)
-    one, other = (recorded(case)["beside"].velocity for case in (settled, without))
-    np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
 
 
 def test_the_stress_at_rest_that_turns_with_the_disks_is_counted() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -11,7 +10,7 @@ from scene_tables import grains
 from small_cases import GRAINS, PUSHED, Tables, around, small
 
 from dembound.accuracy.of_disks.arrangements import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
-from dembound.accuracy.of_disks.cost import MOST, Along, Counted, planned_cost
+from dembound.accuracy.of_disks.cost import Counted, planned_cost
 from dembound.accuracy.of_disks.options import Options
 from dembound.api import case
 from dembound.boundaries.edge import SIDES
@@ -59,12 +58,6 @@ TUNNEL = WITHOUT | {
     "hole": [{"name": "tunnel", "type": "circle", "centre": [20.0, 15.0], "radius": 4.0}],
     "monitor": [{"name": "wall", "position": [26.5, 15.5]}],
 }
-BAR = WITHOUT | {
-    "packing": {"pattern": "A", "size": [60.0, 3.0], "radius": 0.5},
-    "motion": {"held": ["y", "rotation"]},
-    "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}, "right": VISCOUS},
-    "monitor": [{"name": "far", "position": [50.5, 1.5]}],
-}
 RANDOM = FORCE | {"packing": grains(30.0, 15.0, 1.0, 10.0) | {"brick": [10.0, 15.0]}}
 FOUR = FORCE | {
     "boundary": around("outside", "left", "right", "bottom", "top"),
@@ -101,28 +94,6 @@ def test_counted_costs_are_those_of_plans(tables: dict[str, Any], factors: tuple
             assert counted.disks == pytest.approx(planned.disks, rel=0.02), option.words
             assert counted.nodes == pytest.approx(planned.nodes, rel=0.02), option.words
     assert len(names) > 1 or tables is FOUR
-
-
-def test_choices_keep_what_is_to_be_kept() -> None:
-    case = small(BAR)
-    given = plan(case)
-    assert {each.factor for each in Options(given, 0.02, ["packing.radius"]).of(1.0)} == {1.0}
-    assert Options(given, 0.02, ["packing.radius"]).factors == [1.0]
-    kept = Options(given, 0.02, ["boundary"]).of(1.0)
-    assert {each.arrangement for each in kept} == {"sides as given", "viscous sides"}  # as they are
-    assert not any(each.wider for each in Options(given, 0.02, ["packing.size"]).of(1.0))
-
-
-@pytest.mark.parametrize(("bricks", "elements", "brick"), [(60, 9, 1.0), (56, 11, 1.0), (4, 4, 25.0)])
-def test_a_piece_has_bricks_where_the_case_has_them(bricks: int, elements: int, brick: float) -> None:
-    piece = Along(bricks, elements).shorter(brick)
-    ratio = Fraction(bricks, elements)
-    assert piece.elements <= MOST
-    if ratio.denominator <= MOST and ratio * Fraction(brick) <= 12:
-        assert Fraction(*piece) == ratio
-    elif ratio * Fraction(brick) <= 12:
-        assert Fraction(*piece).denominator >= MOST - 1  # nowhere do all bricks meet nodes alike
-        assert float(Fraction(*piece)) == pytest.approx(float(ratio), rel=0.1)
 
 
 SIZE = (120.0, 100.0)

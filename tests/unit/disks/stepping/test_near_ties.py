@@ -46,25 +46,6 @@ class Watched:
         return {side: event for side, event in found.items() if event is not None}
 
 
-def test_slip_near_a_side_is_found_with_its_time_and_place(scene) -> None:
-    run = Watched(scene)
-    assert run.look(10) == {}
-    far = run.between((5.5, 4.5), (6.5, 4.5))
-    run.pairs.arrays.slip[far] = 0.1
-    assert run.look(20) == {}
-    near = run.between((2.5, 4.5), (3.5, 4.5))
-    run.pairs.arrays.slip[near] = -0.99e-3 * 1e6 / run.stiffness
-    assert run.look(30) == {}
-    run.pairs.arrays.slip[near] = -1.01e-3 * 1e6 / run.stiffness
-    assert run.look(40) == {"left": {"time": 40 * STEP, "position": [3.0, 4.5]}}
-    run.pairs.arrays.slip[run.between((5.5, 0.5), (5.5, 1.5))] = 0.1
-    run.pairs.arrays.slip[run.between((6.5, 1.5), (6.5, 2.5))] = 0.2
-    found = run.look(50)
-    assert found["left"]["time"] == 40 * STEP
-    assert found["bottom"] == {"time": 50 * STEP, "position": [6.5, 2.0]}  # the larger one
-    assert set(found) == {"left", "bottom"}
-
-
 @pytest.mark.parametrize(("way", "opens"), [(1.0, True), (-1.0, False)])
 def test_a_contact_that_is_open_without_slip_is_found(scene, way, opens) -> None:
     run = Watched(scene)

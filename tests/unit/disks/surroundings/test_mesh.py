@@ -1,6 +1,5 @@
 """The continuum beyond sides that holes reach, and round disks of layered ground."""
 
-import math
 from typing import Any
 
 import h5py
@@ -13,10 +12,9 @@ from dembound.boundaries.support import Edge
 from dembound.continuum.medium import Layered, Medium
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.scene import DiskScene, build, ground_of
-from dembound.disks.stability import step_limit
 from dembound.disks.surroundings.cut_bonds import CutBonds
 from dembound.disks.surroundings.edges import edge_without
-from dembound.disks.surroundings.frequencies import frequencies_of, mean_frequency, share_above
+from dembound.disks.surroundings.frequencies import frequencies_of, share_above
 from dembound.disks.surroundings.media import medium_of
 from dembound.kinds.disks.facts import disk_facts
 from dembound.motion.simulation import Simulation
@@ -139,11 +137,6 @@ def test_the_mass_up_to_where_that_of_the_packing_ends_is_kept() -> None:
     assert corner.outside.body.mass.sum() == pytest.approx(2500.0 * area, rel=1e-12)
 
 
-def test_small_elements_keep_a_usable_step() -> None:
-    """Elements of five disks have light nodes. With slopes taken at their edges the step would be 22 times smaller."""
-    assert step_limit(beside("bottom", **{"outside.element": 2.5})) > 0.25 * step_limit(beside(boundary={}))
-
-
 WAVES = {
     "boundary.bottom": {"type": "outside", "wave_s": "up"},
     "wave.up": {"type": "cosine", "amplitude": 1.0, "period": 0.1},
@@ -201,14 +194,6 @@ def test_a_side_with_a_frame_is_as_long_as_its_disks_together(bar, bottom: str) 
     lengths = {"left": 8.0 + more, "right": 8.0 + more} | ({} if more == 0.0 else {"bottom": 4.5, "top": 4.5})
     assert {side: edge.length for side, edge in edges.items()} == pytest.approx(lengths, rel=1e-12)
     assert [edge.diameter_sum_ratio for edge in edges.values()] == pytest.approx([1.0] * len(edges), rel=1e-12)
-
-
-def test_the_mean_frequency_is_that_of_the_energy() -> None:
-    case = small(GRAINS | {"wave": {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 20.0}}})
-    # energies f⁴ exp(−2f²/f0²): f0 Γ(3)/(√2 Γ(5/2)); samples of a Ricker wavelet cut off where it is 1e-4
-    assert mean_frequency(case) == pytest.approx(20.0 * math.gamma(3.0) / (math.sqrt(2.0) * math.gamma(2.5)), rel=1e-3)
-    silent = {key: value for key, value in GRAINS.items() if key not in ("wave", "boundary")}
-    assert math.isnan(mean_frequency(small(silent)))
 
 
 def test_a_single_frequency_halves_the_energy() -> None:

@@ -1,8 +1,5 @@
 """The settings of a continuum that a case gives, and those chosen from its waves and loads."""
 
-import math
-from dataclasses import replace
-
 import pytest
 from disk_systems import LAMB
 
@@ -10,14 +7,10 @@ from dembound.continuum import sizing
 from dembound.continuum.medium import Medium
 from dembound.disks.surroundings.elements import mesh_of
 from dembound.disks.surroundings.settings import (
-    Buried,
-    buried,
     lasting_time,
     near_fields,
     settings_of,
 )
-from dembound.errors import CaseError
-from dembound.kinds import with_changes
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 500.0)
 BOX = (0.0, 0.0, 40.0, 20.0)
@@ -63,12 +56,6 @@ def test_elements_are_small_beside_a_load_or_a_hole_and_never_too_small(case) ->
     assert chosen(case(packing=random, load={"position": [1.5, 9.5]})).element == pytest.approx(11.2)
 
 
-def test_without_anything_that_moves_the_size_has_to_be_given(case) -> None:
-    with pytest.raises(CaseError, match=r"outside.element: is absent, but the case has no wave"):
-        chosen(replace(case(), load=(), wave={}))
-    assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
-
-
 def test_a_load_that_stays_needs_a_margin(case) -> None:
     stays = case(wave={"pulse": STAYS})
 
@@ -92,22 +79,3 @@ def test_elements_of_flat_ground_are_about_as_wide_as_high(case) -> None:
     assert found._replace(least=5.0).sides(240.0, 8.0) == (240.0 / 40.0, 8.0)
     mesh = mesh_of(found, (0.0, 0.0, 240.0, 8.0), SIDES)
     assert {(width, height) for width, height in mesh.shapes.tolist()} == {(4.0, 4.0)}
-
-
-HOLE = {"name": "hole", "type": "circle", "centre": [20.0, 8.0], "radius": 4.0}
-
-
-def test_layers_begin_farther_beside_deep_ground(case) -> None:
-    """Beside a hole 132 m below the surface, 20 m from the sides, S waves of half the speed of P waves."""
-    everywhere = {side: {"type": "outside"} for side in (*SIDES, "top")}
-    placed = {"ground.size": [100.0, 240.0], "packing.origin": [30.0, 100.0], "boundary": everywhere, "load": []}
-    deep = with_changes(case(), placed | {"hole": [HOLE | {"centre": [50.0, 108.0]}], "outside.element": 5.0})
-    box = (30.0, 100.0, 70.0, 120.0)
-    sources = buried(deep, box, (*SIDES, "top"))
-    assert sources == [Buried(132.0, 20.0, (40.0, 20.0))] * 2
-    found = settings_of(deep, ROCK, 1.0, box, (*SIDES, "top"))
-    errors = [sources[0].error(found, ROCK, margin) for margin in (found.margin - 1, found.margin)]
-    assert errors[1] <= 1e-3 < errors[0]
-    # cos θ = 0.75/2 · 1: 53.4 m from the hole, less 20 m of disks and 0.4 of three elements
-    assert found.margin == math.ceil((132.0 * 0.375 / math.sqrt(1.0 - 0.375**2) - 20.0 - 0.4 * 15.0) / 5.0)
-    assert settings_of(with_changes(deep, {"outside.margin": 2}), ROCK, 1.0, box, SIDES).margin == 2

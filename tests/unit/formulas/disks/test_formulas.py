@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import tomli_w
 from plane_motion import recorded as measured
-from small_cases import SURROUNDED, Tables, around, small
+from small_cases import Tables, around, small
 
 from dembound.accuracy.of_disks.causes import Formulas, causes_of_run
 from dembound.disks.scene import build
@@ -13,12 +13,9 @@ from dembound.exact.column import Column, Layer
 from dembound.formulas.cause import GRID, STEP
 from dembound.formulas.disks.dispersion import SLOW, Dispersion, causes_of_kinks
 from dembound.formulas.disks.entry import late_by
-from dembound.formulas.disks.held_sides import reflected_motion
-from dembound.formulas.disks.reflections import Reflected
 from dembound.formulas.history import History, part_above
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
-from dembound.results.compare import relative_error
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
 TIME = np.linspace(0.0, 0.08, 401)
@@ -61,17 +58,6 @@ def test_a_driven_side_keeps_a_part_of_its_wave_and_sends_back_what_returns():
     np.testing.assert_array_equal(error["velocity"][:, 0], 0.0)
 
 
-def test_reflection_out_of_phase_leaves_no_displacement():
-    record = recorded(pulse(TIME))["middle"]
-    found = reflected_motion(record, 1, Reflected(0.1, 0.0))
-    acceleration = np.gradient(pulse(TIME), TIME)
-    assert np.linalg.norm(found["velocity"]) == pytest.approx(0.1 * np.linalg.norm(pulse(TIME)))
-    assert float(found["velocity"] @ acceleration) < 0.0  # a mass too much: late, as −τ dv/dt
-    assert abs(found["displacement"][-1]) < 1e-12
-    sent = reflected_motion(record, 1, Reflected(1.0, 1.0))  # without dashpots nothing comes in
-    assert all((values == 0.0).all() for values in sent.values())
-
-
 def test_waves_are_late_by_the_mean_of_their_ways_and_larger_steps_make_them_earlier():
     # c(q) = c(1 − (qD)²/24) on the way H, so that ω comes late by τ = (H/c)(ωD/c)²/24: the error −τ dv/dt is
     # (H/c)(D/c)²/24 d³v/dt³. Next terms are smaller by (qD)², 2 % of the third derivative of this pulse.
@@ -84,31 +70,6 @@ def test_waves_are_late_by_the_mean_of_their_ways_and_larger_steps_make_them_ear
     grid, step = (cause(LAYER, name, recorded(bell), 4e-4)["velocity"][:, 1] for name in (GRID, STEP))
     second = np.gradient(np.gradient(bell, TIME), TIME)
     np.testing.assert_allclose(step, -0.64 * grid + 4e-4**2 / 8.0 * second, atol=0.03 * np.abs(grid).max())
-
-
-PRESSED = {"static.boundary.bottom.type": "fixed", "load.weight.wave": None}
-
-
-@pytest.mark.parametrize(("changes", "is_known"), [({}, False), (PRESSED, True)])
-def test_contacts_that_may_be_open_beside_a_continuum_are_an_unknown_cause(changes, is_known) -> None:
-    weight = {"name": "weight", "acceleration": [0.0, -10.0], "wave": "push"}
-    tables = SURROUNDED | {"wave": {"push": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}}
-    tables["load"] = [weight, {"name": "push", "force": [0.0, -1.0], "position": [6.5, 5.5], "wave": "push"}]
-    scene = build(small(tables, changes=changes | {"material.law": "linearpbond"}))
-    found = Formulas(scene, 1e-4).causes(recorded(pulse(TIME)))
-    assert ("continuum beside contacts" not in [each.name for each in found]) == is_known
-
-
-def test_what_waves_that_start_everywhere_or_jump_do_is_not_estimated():
-    shake = {"name": "shake", "acceleration": [0.0, 1.0], "wave": "pulse"}
-    pulled = LAYER | {"boundary": ROUND, "load": [shake]}
-    found = causes_of_run(small(pulled), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
-    assert not {GRID, STEP} & {each.name for each in found.found}
-    assert ("grid and time step", "waves start everywhere") in [(each.name, each.words) for each in found.unknown]
-    jumping = SURROUNDED | {"wave": {"push": {"type": "constant", "amplitude": 1.0}}}
-    jumping["load"] = [{"name": "push", "force": [0.0, -1.0], "position": [6.0, 6.0], "wave": "push"}]
-    found = causes_of_run(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
-    assert [each.how for each in found.found if each.name == "continuum"] == ["unknown"]
 
 
 @pytest.mark.parametrize(
@@ -142,29 +103,6 @@ def test_waves_that_come_back_to_disks_held_at_their_centres_are_early(bottom, t
         difference = (own.values[quantity][:, column] - other)[inside]
         expected = sum(2.0 / 3.0 * np.asarray(each.parts["top"][quantity])[:, column][inside] for each in found)
         assert np.linalg.norm(difference - expected) < 0.24 * np.linalg.norm(difference)
-
-
-def test_single_disks_at_a_random_surface_err_as_waves_at_an_angle_strain_it() -> None:
-    """Waves of 80 diameters and 20°; eight disks from the surface down to two diameters."""
-    random = {"pattern": "B", "size": [16.0, 8.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [8.0, 8.0], "seed": 3}
-    tables = SURROUNDED | {
-        "packing": random,
-        "outside": {},
-        "incident": {"type": "sv", "angle": 20.0, "wave": "in"},
-        "wave": {"in": {"type": "cosine", "amplitude": 1.0, "period": 0.14}},
-        "monitor": [{"name": f"m{k}", "position": [4.0 + k, 8.0 - 0.5 * (k % 2)]} for k in range(8)],
-        "run": {"duration": 0.2},
-    }
-    case, found, expected = small(tables), [], []
-    scene, motions = build(case), measured(case)
-    # steps so short that they do not count
-    (cause,) = (each for each in Formulas(scene, 1e-6).causes(motions) if each.name == "surface")
-    for name, own in motions.items():
-        ground = scene.ground_waves.motion("velocity", own.time, own.place[None])[:, 0, :2]
-        column = own.component("velocity")
-        found.append(relative_error((own.velocity - ground)[:, column], ground[:, column]))
-        expected.append(cause.share(name, "velocity", own))
-    assert 1.0 / cause.factor < np.linalg.norm(found) / np.linalg.norm(expected) < cause.factor
 
 
 @pytest.mark.parametrize(("alpha", "half_mass"), [(4.0, False), (0.5, True)])
@@ -222,12 +160,6 @@ def test_what_companions_lack_and_have_make_up_the_error_of_all_frequencies(name
     assert whole > 2.0 * below
     # the error of the whole is that within the record; the filter is not causal, by less than 5 % of the error
     assert np.hypot(below, kinks.share("middle", "velocity", there)) == pytest.approx(whole, rel=0.05)
-
-
-def test_smooth_waves_have_nothing_that_companions_lack() -> None:
-    ricker = {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 40.0}}
-    dispersion = Dispersion(build(small(COLUMN | {"wave": ricker})), 2e-4)
-    assert not list(causes_of_kinks(dispersion, SWINGING, LARGER))
 
 
 def test_waves_of_a_force_in_a_place_have_more_high_frequencies_than_plane_ones() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import tomli_w
 from scene_tables import ISOTROPIC, lattice, monitors, point, pulse
-from small_cases import GRAINS, PUSHED, around, small
+from small_cases import PUSHED, around, small
 
 from dembound.accuracy.judge import extended
 from dembound.accuracy.of_disks.companions import Companions
@@ -13,22 +13,17 @@ from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packing_waves import slowest_speed
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.scene import build
 from dembound.disks.surroundings.near_fields import signals_of
 from dembound.formulas.cause import MOTIONS
 from dembound.formulas.disks import near_disks
 from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, OF_WAVES, SHORT, wall_errors
-from dembound.formulas.disks.places import NINE, middle_of_loads, patch_around, weights_at
+from dembound.formulas.disks.places import NINE, middle_of_loads, weights_at
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
 from dembound.kinds import loads, with_changes
 from dembound.packings import Square
 from dembound.running import Progress, plan
-
-
-def grid(**changes: object) -> DiskScene:
-    """Disks of 0.5 m in 10 m × 2.5 m, the first at 0.25 m."""
-    return build(small(PUSHED, changes=changes))
 
 
 def test_quadratic_motion_is_found_at_any_place() -> None:
@@ -43,19 +38,6 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
         assert found == pytest.approx(float(motion(*np.array(place))), rel=1e-12)
     assert weights_at(patch[:1], np.array([9.0, 9.0])) == pytest.approx([1.0])
     assert weights_at(patch, np.array([9.0, 1.3])) == pytest.approx(weights_at(patch, np.array([4.25, 1.3])))
-
-
-@pytest.mark.parametrize(
-    ("place", "middle"),
-    [((3.3, 1.3), (3.25, 1.25)), ((9.9, 2.4), (9.25, 1.75))],
-    ids=["inside", "in a corner"],
-)
-def test_a_patch_is_the_nine_disks_that_are_nearest(place: tuple[float, float], middle: tuple[float, float]) -> None:
-    np.testing.assert_allclose(patch_around(grid(), np.array(place)), 0.5 * NINE + middle, atol=1e-12)
-    low = grid(**{"packing.size": [10.0, 1.0], "monitor": [{"name": "back", "position": [9.6, 0.2]}]})
-    row = [[2.75, 0.25], [3.25, 0.25], [3.75, 0.25]]
-    np.testing.assert_allclose(patch_around(low, np.array([3.3, 0.3])), row, atol=1e-12)
-    assert weights_at(np.array(row), np.array([3.4, 0.9])) @ np.square([2.75, 3.25, 3.75]) == pytest.approx(3.4**2)
 
 
 def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
@@ -74,16 +56,6 @@ def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
     assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
     assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
     assert middle() is None  # driven
-
-
-def test_loads_that_a_body_rests_under_start_no_waves() -> None:
-    foot = {"name": "foot", "force": [0.0, -1e6], "region": [2.0, 0.5, 3.0, 1.5]}
-    hit = {"name": "hit", "force": [1e5, 0.0], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"}
-    at_rest = {"load": [foot, hit], "boundary": {}, "static": {"boundary": {"bottom": {"type": "fixed"}}}}
-    assert middle_of_loads(build(small(PUSHED, changes=at_rest))) == pytest.approx(np.array([6.5, 1.0]))
-    sudden = {"load": [foot, hit], "boundary": {}}
-    found = middle_of_loads(build(small(PUSHED, changes=sudden)))
-    assert found == pytest.approx(np.array([(10 * 2.5 + 6.5) / 11, 1.0]))
 
 
 def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it() -> None:
@@ -210,10 +182,3 @@ def test_short_waves_are_most_wrong_behind_a_hole_but_not_where_the_surface_cuts
         assert errors(kind, far=4.0)[1] == pytest.approx(behind / 2.0**near_disks.FALL, rel=1e-3)
         mean = along * (LIT + 0.5 * (DARK + CREEP * along)) / 4.0
         assert errors(kind, height=20.0) == pytest.approx([mean, mean], rel=1e-3)
-
-
-def test_no_wall_in_a_random_packing_is_between_disks() -> None:
-    burst = {"name": "burst", "hole": "cave", "pressure": 1e5, "wave": "pulse"}
-    hole = {**CAVE, "corners": [3.0, 1.0, 6.0, 3.0]}
-    random = small(GRAINS, changes={"hole": [hole], "monitor": [], "load": [burst]})
-    assert wall_errors(random, build(random).ground, 0.5)["velocity"] == pytest.approx(near_disks.RANDOM / 2.0)

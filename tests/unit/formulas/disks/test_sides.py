@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from small_cases import PUSHED, SURROUNDED, Tables, around, small
 
-from dembound.continuum.sizing import slowest
 from dembound.disks.scene import DiskScene, build
 from dembound.formulas.disks import continuum as of
 from dembound.formulas.disks.beside_wave import Grid, taken_from_waves, undisturbed
-from dembound.formulas.disks.continuum import FLATTEST, _spread, expected_errors
-from dembound.formulas.disks.rest import CHANCE, CHANCE_LATTICE, CHANCE_STRESSED, _way, causes_of_rest
+from dembound.formulas.disks.continuum import expected_errors
+from dembound.formulas.disks.rest import CHANCE_LATTICE, causes_of_rest
 from dembound.formulas.history import History
 from dembound.holes import Circle
-from dembound.motion.paths import Source
-from dembound.table import EVERYWHERE
 
 SPEED, PERIOD = 1000.0, 0.02
 
@@ -78,21 +74,6 @@ def test_the_undisturbed_ground_carries_the_wave_and_its_surface_doubles_it() ->
 @pytest.mark.parametrize("along", [{"type": "free"}, {"type": "fixed", "artificial": False}, {"type": "free_field"}])
 def test_sides_that_end_the_body_or_whose_ground_moves_are_not_asked_about(along: dict) -> None:
     assert list(taken_from_waves(scene_of("bottom", along))) == []
-
-
-@pytest.mark.parametrize("kind", ["roller", "symmetry", "fixed"])
-def test_walls_and_mirrors_hold_what_moves_across_them(kind: str) -> None:
-    """Rollers and mirrors do not disturb a wave that moves along them."""
-    assert min(shares("bottom", {"type": kind})) > 0.5
-    moving = scene_of("bottom", {"type": kind}, "p")
-    taken = [share for found in taken_from_waves(moving) for share in found.shares.values()]
-    assert (max(taken) < 1e-12) == (kind != "fixed")
-
-
-def test_places_that_the_wave_has_not_reached_have_no_share() -> None:
-    """At 707 m/s it takes 3.5 ms to one monitor and 13 ms to the other; explicit steps move that by rounding."""
-    assert len(shares("bottom", {"type": "viscous"}, **{"run.duration": 0.012})) == 1
-    assert len(shares("bottom", {"type": "viscous"}, **{"run.duration": 0.02})) == 2
 
 
 S_SPEED, DIAMETER = 1000.0 / math.sqrt(2.0), 1.0
@@ -158,54 +139,15 @@ def test_layers_return_a_part_of_r0_and_are_too_steep_for_what_lasts() -> None:
     assert steep == pytest.approx(4.0 * flat, rel=0.05)
 
 
-def test_of_waves_that_come_through_it_a_part_leaves_through_it_again_and_places_are_alike() -> None:
-    made = scene(20.0, load=[], boundary=around("outside") | {"bottom": {"type": "outside", "wave_s": "w"}})
-    k = 2.0 * math.pi * 20.0 / S_SPEED
-    ties = of.TIES * (1.0 / 16.0 + 0.1 / 8.0 / math.sqrt(2.0)) * k**2
-    assert velocity(made) == pytest.approx(of.SCATTERED * ties, rel=0.05)
-    assert velocity(made, (1.0, 3.0)) == velocity(made)
-
-
-def test_beside_a_blast_elements_and_ties_err_in_its_static_field_where_it_is() -> None:
-    """A burst of 1 Hz in a hole of 3 m amid elements as wide as the box, and in place of it a wave from below."""
-    hole = {"name": "cave", "type": "circle", "centre": list(MIDDLE), "radius": 3.0}
-    blast = {"name": "blast", "hole": "cave", "pressure": 1e6, "wave": "w"}
-    wide = {"element": 20.0}
-    made = scene(1.0, outside=wide, hole=[hole], load=[blast])
-    largest = math.hypot(2e-2, 0.2 / 10.0**2)
-    for x in (14.0, 17.0):
-        assert velocity(made, (x, 10.0)) == pytest.approx(largest * ((x - 10.0) / 10.0) ** 2, rel=0.01)
-    below = around("outside") | {"bottom": {"type": "outside", "wave_s": "w"}}
-    passed = scene(1.0, outside=wide, hole=[hole], load=[], boundary=below)
-    k = 2.0 * math.pi / S_SPEED
-    assert velocity(passed) == pytest.approx(2e-2 * 1.5 * k * 3.0 * 0.3, rel=0.02)
-
-
 def test_nothing_is_known_without_a_continuum_or_of_waves_that_jump() -> None:
     assert expected_errors(scene(20.0, wave={"w": {"type": "constant", "amplitude": 1.0}}), {}) is None
     assert expected_errors(scene(20.0, boundary={}), {}) is None
     assert expected_errors(scene(20.0), {}) == {}
 
 
-def test_what_random_bricks_would_scatter_is_missing_beside_a_continuum(monkeypatch) -> None:
-    """0.06 k²LD of a burst about one frequency; waves shorter than a brick are as those of its length."""
-    packing = {"pattern": "B", "size": [20.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
-    for frequency in (20.0, 200.0):
-        made = scene(frequency, packing=packing)
-        k = 2.0 * math.pi * min(frequency / slowest(made.outside.body.medium), 1.0 / 10.0)
-        both = velocity(made)
-        monkeypatch.setattr(of, "BRICKS", 0.0)
-        bricks = math.sqrt(both**2 - velocity(made) ** 2)
-        monkeypatch.undo()
-        assert bricks == pytest.approx(0.06 * k**2 * 10.0 * made.ground.brick.mean_diameter, rel=0.02)
-
-
 STATIC: dict[str, Any] = {"elastic": False, "ratio": 1e-7, "mean_residual": 3e-3, "cracks": 0}
 STATIC |= {"before": None, "column": None}
 PEAK = 2e-3
-
-
-GRAINS = {"pattern": "B", "size": [10.0, 2.5], "radius": 0.25, "brick": [5.0, 2.5], "radius_ratio": 1.5, "seed": 1}
 
 
 def resting(packing: dict[str, Any] = PUSHED["packing"], share: float = 0.5, **static: float) -> DiskScene:
@@ -233,16 +175,6 @@ def test_the_error_is_the_force_of_rest_over_that_of_the_wave(static: dict[str, 
     assert cause.parts["front"]["displacement"] == pytest.approx(0.3 * cause.parts["front"]["velocity"])
 
 
-def test_chance_is_larger_in_random_packings_and_least_beside_a_stress_at_rest() -> None:
-    """Over a mean contact force of 3e4 N, with nothing left but chance."""
-    settled = STATIC | {"mean_residual": 3e-13, "ratio": 1e-17}
-    found = []
-    for static in ({}, {"k0": 0.5}):
-        (cause,) = causes_of_rest(resting(GRAINS, **static), motions(PEAK), settled).found
-        found.append(cause.parts["front"]["velocity"])
-    assert found[0] / found[1] == pytest.approx(CHANCE / CHANCE_STRESSED)
-
-
 def test_nothing_is_said_without_sliding_and_nothing_is_known_with_breaks() -> None:
     body, moved = resting(), motions(PEAK)
     assert causes_of_rest(body, moved, STATIC | {"elastic": True}).found == []
@@ -256,18 +188,3 @@ def test_nothing_is_said_without_sliding_and_nothing_is_known_with_breaks() -> N
     (cause,) = causes_of_rest(resting(share=0.6), moved, STATIC).unknown
     assert "that they bear more than bonds" in cause.words
     assert np.isnan(causes_of_rest(body, motions(0.0), STATIC).found[0].parts["front"]["velocity"])
-
-
-def test_a_wave_on_all_sides_runs_through_the_scene() -> None:
-    size, there = (3.0, 4.0), np.array([1.0, 1.0])
-    assert _way(Source(EVERYWHERE, 0.0, 1.0, 500.0), there, size) == 5.0
-    assert _way(Source((2.0, 1.0, 2.0, 1.0), 0.0, 1.0, 500.0), there, size) == 1.0
-
-
-def test_a_place_at_the_image_of_a_load_beyond_a_side_has_a_finite_share() -> None:
-    outside = SimpleNamespace(box=(0.0, 0.0, 10.0, 8.0), sides=("top",))
-    scene = SimpleNamespace(ground=SimpleNamespace(brick=SimpleNamespace(mean_diameter=0.5)))
-    source = np.array([5.0, 6.0])
-    # ways of 4 m and, instead of none, of a diameter, straight up
-    assert _spread(scene, outside, source, np.array([5.0, 10.0])) == pytest.approx(np.sqrt(4.0 / 0.5) / FLATTEST)
-    assert _spread(scene, outside, source, np.array([5.0, 4.0])) == pytest.approx(np.sqrt(2.0 / 6.0))

@@ -9,7 +9,6 @@ from small_cases import PUSHED, around, small
 
 from dembound.accuracy.runner import measure
 from dembound.disks.scene import DiskScene, build
-from dembound.formulas.disks import reflections
 from dembound.formulas.disks.entry import entries_of, late_by
 from dembound.formulas.disks.near_disks import ALONG_RAY, CURVED, errors_near_loads
 from dembound.formulas.disks.reflections import Reflected, Reflections, factor_for
@@ -93,13 +92,6 @@ def test_p_waves_enter_a_lattice_at_centres_and_dashpots_move_the_row_outside_of
     assert late(driven(side, type="viscous_input", half_mass=True), side) == pytest.approx(-D / 2, abs=1e-5)
 
 
-@pytest.mark.parametrize("side", ["right", "bottom"])
-def test_the_time_is_the_same_wherever_the_scene_is(side: str) -> None:
-    tables = driven(side, type="velocity")
-    moved = tables | {"packing": tables["packing"] | {"origin": [-3.5, 61.25]}}
-    assert late(moved, side) == pytest.approx(late(tables, side), abs=1e-9)  # rounding of 100 m
-
-
 def test_disks_of_a_driven_row_turn_less_so_that_s_waves_enter_farther_inside() -> None:
     """Without bending they turn half as far, and the row shears by 7/4 F/k in place of 2 F/k: 1/8 D farther.
 
@@ -137,17 +129,6 @@ def test_a_wave_comes_as_much_later_as_it_enters(kind: str, motion: str) -> None
     assert late_by(scene) == pytest.approx(entry.late / entry.speed)
 
 
-def test_through_a_continuum_waves_enter_where_it_ends() -> None:
-    """Beyond the row of pattern C, whose disks are centred on the side: half of a row later."""
-    packing = {"pattern": "C", "size": [4.0, 8.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-    tables = driven("bottom", type="outside") | {"packing": packing | {"edge_radius": 0.25, "seed": 1}}
-    scene = build(small(tables))
-    found = entries_of(scene)["bottom"]["p"]
-    assert found.late == pytest.approx(-scene.outside.box[1])
-    assert found.late == pytest.approx(0.25, abs=0.02)  # D/2 of a row
-    assert found.delay == pytest.approx(found.late / scene.ground.wave_speeds(1)[0])
-
-
 STEP = 1e-4
 
 
@@ -179,14 +160,6 @@ def test_whole_cells_reflect_out_of_phase():
     for reflection in (-0.4, 0.0, 0.3):
         factor = factor_for(reflection)
         assert (1.0 - factor) / (1.0 + factor) == pytest.approx(reflection)
-
-
-def test_sides_beside_bricks_of_any_size_are_measured(monkeypatch):
-    """Without a measurement whole cells with β = 1 would count as perfect."""
-    usual = shares(half_mass=False)["p"].out_of_phase
-    monkeypatch.setattr(reflections, "DISKS", 0)
-    found = shares(half_mass=False)["p"].out_of_phase
-    assert found == pytest.approx(usual, rel=0.3)  # at one frequency for the mean of three
 
 
 RATE = 2.0 * np.pi * 20.0
@@ -227,15 +200,6 @@ def test_it_is_of_second_order_in_the_disks_times_the_curvature_along_the_ray() 
         assert error == pytest.approx(expected, rel=1e-3), quantity  # differences of TIME: (ωΔt)²/6 = 2e-4
     finer = errors_near_loads(scene(0.125), own)
     assert finer["velocity"] == pytest.approx(expected / 4.0, rel=1e-3)
-
-
-def test_motion_across_the_ray_has_none_and_half_of_it_at_45_degrees_is_along_the_ray() -> None:
-    """Waves across are shear; the part along the ray of v along x is v cos 45°, and cos 45° of that is along x."""
-    found = errors_near_loads(scene(0.25), recorded((7.0, 1.0), (0.0, 1.0)))
-    assert found == pytest.approx({"velocity": 0.0, "displacement": 0.0}, abs=1e-12)
-    own = recorded((2.0 + 1.2, 1.0 + 1.2), (1.0, 0.0))
-    expected = 0.5 * near(0.5, 1.2 * 2.0**0.5)
-    assert errors_near_loads(scene(0.25), own)["velocity"] == pytest.approx(expected, rel=1e-3)
 
 
 def test_there_is_none_without_a_force_and_a_finite_one_at_it() -> None:

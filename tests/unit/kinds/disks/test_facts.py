@@ -14,7 +14,7 @@ from dembound.disks.scene import build
 from dembound.disks.surroundings.settings import signals_of
 from dembound.formulas.disks.continuum import expected_errors
 from dembound.kinds import with_changes
-from dembound.kinds.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
+from dembound.kinds.disks.continuum_facts import continuum_facts, continuum_warnings
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import incident_facts
 from dembound.kinds.disks.kind import Disks
@@ -195,16 +195,6 @@ def test_facts_are_those_of_the_continuum(case) -> None:
     assert "elements themselves about 0.04 %" in facts["absorbing layers"]
 
 
-def test_reflections_are_those_of_the_profile(case) -> None:
-    """R0^(cos θ c_p/c), as α is small beside ω: 1e-4, 1e-2 at 60°, and its 1.414th power of S waves."""
-    words = facts_beyond(case)["absorbing layers"]
-    p, s = re.search(r"at most ([\d., e-]+) % of P and ([\d., e-]+) % of S", words).groups()
-
-    for found, slower in ((p, 1.0), (s, np.sqrt(2.0))):
-        expected = 100.0 * 1e-4 ** (np.cos(np.radians(ANGLES)) * slower)
-        assert [float(each) for each in found.split(",")] == pytest.approx(expected, rel=0.05)
-
-
 def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
     """Bricks of 10 m do so from 36 Hz on, as do forces along both axes and waves from below along y."""
     short = {"type": "cosine", "amplitude": 1.0, "period": 0.05}
@@ -265,19 +255,3 @@ def test_layers_of_strongly_anisotropic_ground(case) -> None:
     assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
     assert expected_errors(build(with_changes(case, shear)), {"here": np.array([20.0, 10.0])}) is None
-
-
-def test_a_low_row_of_elements_has_a_warning(case) -> None:
-    soil = {"thickness": 8.0, "density": 1800.0, "s_wave_speed": 350.0}
-    layers = [soil, {"name": "seam", "thickness": 2.0}, {}]
-    (line,) = warnings_of(case, **{"outside.accuracy": 0.01, "layer": layers})
-    assert line.startswith("layer: a row of elements 2 m high beside layer seam shortens the time step to about 0.82 ")
-
-
-def test_elements_too_large_beside_a_load(case) -> None:
-    slow = {"wave.pulse.period": 20.0, "outside.element": 40.0}
-    near = {"load": [point((0.0, -1e6), (20.5, 4.5))]}
-    assert warnings_of(case, **slow) == []
-    (line,) = warnings_of(case, **slow, **near)
-    said = "outside.element: elements of 40 m are too large beside a load or hole, with an error of about 2"
-    assert line.startswith(said)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
 from small_cases import small
-from warned_cases import warned
 
 from dembound import api
 from dembound.check import check
@@ -57,21 +56,6 @@ def test_each_layer_has_its_heights_speeds_and_disks_in_a_wavelength() -> None:
     assert facts["layer rock"].startswith("y = -11 to -20 m and on below, ")
     above = build(soil(boundary__bottom={"type": "fixed"}, wave={}))
     assert dict(disk_facts(above))["layer rock"].startswith("y = -11 to -20 m, ")
-
-
-def test_mistakes_name_the_layer_that_has_them_and_the_side_beside_it() -> None:
-    """S waves of rock are given as 300 m/s, and have 700; of all others as nothing."""
-    rock = {"name": "rock", "density": 2300.0, "emod": 2.254e9, "pb_emod": 2.254e9, "s_wave_speed": 300.0}
-    layers = [*LAYERS[:2], rock]
-    lines = warned(soil(layer=layers, boundary__left={"type": "viscous", "beta_s": 1.0}))
-    given = "layer.rock.s_wave_speed: is 300 m/s, S waves along y run at 700 m/s"
-    assert len([line for line in lines if line.startswith(given)]) == 1
-    (side,) = [line for line in lines if "beta_s is 1" in line]
-    assert side.startswith("boundary.left (beside rock): sends back 40 % of the amplitude of S waves")
-    assert "matched would be 2.33" in side
-    moduli = {"density": 2000.0, "emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 300.0}
-    inherited = warned(soil(material=moduli, layer=[{"thickness": 5.0, "density": 5500.0}, {"name": "b"}]))
-    assert len([line for line in inherited if line.startswith("material.s_wave_speed: is 300 m/s")]) == 1
 
 
 @pytest.fixture(scope="module")

@@ -48,36 +48,12 @@ def test_grips_hold_both_components_and_other_tables_do_not_count() -> None:
     assert ignored(case) == ["boundary", "wave"]
 
 
-def test_what_only_layers_have_is_missing_in_a_sample() -> None:
-    two = {"layer": [{"thickness": 2.0, "density": 1800.0}, {"density": 2300.0}], "material.density": None}
-    with pytest.raises(CaseError, match=r"a sample has no layers; give .* --set material\.density=2300"):
-        sample(changes=RANDOM | two)
-    assert sample(changes=RANDOM | two | {"material.density": 2000.0}).material["density"] == 2000.0
-
-
 def test_lattices_have_whole_cells_and_one_sample() -> None:
     lattice = sample(changes=BROKEN, width=3.2)
 
     assert (lattice.width, lattice.height) == (3.0, 6.5)
     with pytest.raises(CaseError, match="--seeds: all samples of this pattern are the same"):
         lattice.text(1)
-
-
-def test_doubts_before_any_test() -> None:
-    assert list(sample().warnings) == []
-    (few,) = sample(width=4.5).warnings
-    assert "9 diameters across" in few
-    (unit,) = sample(changes=RANDOM | {"material.pb_ten": 5e2}).warnings
-    assert "pb_ten and pb_coh of 500 Pa go with a strain of" in unit
-
-
-def test_refusals_name_what_to_give() -> None:
-    with pytest.raises(CaseError, match="--height: is not of a brazilian test"):
-        sample("brazilian", height=5.0)
-    with pytest.raises(CaseError, match="has no strength"):
-        sample(changes={})
-    with pytest.raises(CaseError, match=r"--width: is missing.*40 diameters"):
-        sample(changes=BROKEN | {"packing.size": [500.0, 50.0]})
 
 
 def test_mohr_coulomb() -> None:

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from dembound.casefile.disks.targets import Scatter
 from dembound.errors import CaseError
-from dembound.studies.laboratory.strengths import CLOSE, COHESIONS, SHARES, SPREADS, Search, in_words, spread_of
+from dembound.studies.laboratory.strengths import CLOSE, COHESIONS, SHARES, Search, in_words
 from dembound.studies.sweep.tables import Statistic
 
 BOTH = {"ucs": 180e6, "tension": 50e6}
@@ -53,17 +52,6 @@ def test_a_ratio_unlike_the_table_takes_a_third_trial(level: float, slope: float
     assert search.best(trials) is trials[-1]
 
 
-def test_strengths_that_do_not_follow_end_with_the_best_trial() -> None:
-    targets = {"ucs": 100e6, "tension": 30e6}
-    noise = iter([1.06, 0.9, 1.1, 0.94])
-    search, rock = Search(targets), Rock()
-    rock.ratio = lambda cohesion: 100.0 / 30.0 * next(noise)
-    trials = list(search.trials(rock.measure))
-
-    assert len(trials) == 4
-    assert search.best(trials).deviation(targets) == min(trial.deviation(targets) for trial in trials)
-
-
 def test_one_strength_scales_both_of_the_bonds() -> None:
     rock, targets = Rock(), {"tension": 10e6}
     *_, last = Search(targets, cohesion=0.8).trials(rock.measure)
@@ -71,27 +59,6 @@ def test_one_strength_scales_both_of_the_bonds() -> None:
     assert {test for test, _, _ in rock.tested} == {"tension"}
     assert last.strengths["tension"].mean == pytest.approx(10e6, rel=1e-3)
     assert last.cohesion == pytest.approx(0.8, rel=1e-3)
-
-
-def test_a_spread_between_those_of_the_table() -> None:
-    spread = 0.5 * (SPREADS[0] + SPREADS[1])
-    share = 0.5 * (SHARES["tension"][0][2] + SHARES["tension"][1][2])
-    first = next(Search({"tension": 10e6}, spread=spread).trials(Rock().measure))
-
-    assert first.pb_ten == pytest.approx(10e6 / share, rel=0.02)  # of logarithms
-    assert spread_of(None) == 0.0
-    assert spread_of(Scatter(type="normal", deviation=0.1)) == pytest.approx(0.1, rel=0.03)  # cut off at 3 deviations
-    assert spread_of(Scatter(type="weibull", shape=5.0)) == pytest.approx(0.23, rel=0.03)  # √(Γ(1.4)/Γ(1.2)² − 1)
-
-
-def test_ratios_out_of_reach_are_refused() -> None:
-    with pytest.raises(CaseError, match=r"is 10, parallel bonds of one strength reach about 5.*pb_scatter"):
-        next(Search({"ucs": 100e6, "tension": 10e6}).trials(Rock().measure))
-    with pytest.raises(CaseError, match=rf"must be {ONE_STRENGTH[0]:.3g} or more"):
-        next(Search({"ucs": 15e6, "tension": 10e6}).trials(Rock().measure))
-    with pytest.raises(CaseError, match=r"is 4, .*in this packing 1\.5 to 3\.2"):
-        list(Search({"ucs": 40e6, "tension": 10e6}).trials(Rock(ratio=0.8).measure))
-    assert next(Search({"ucs": 60e6, "tension": 10e6}, spread=SPREADS[-1]).trials(Rock().measure))
 
 
 def test_bonds_without_moments_reach_the_ratio_of_rock() -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from small_cases import GRAINS, PUSHED, SOIL, small
 
-from dembound.errors import CaseError, RecordError
+from dembound.errors import CaseError
 from dembound.results.compare import compare
 from dembound.running import run_case
 from dembound.running.recorded import recorded_case
@@ -127,18 +127,6 @@ def test_what_is_not_linear_is_refused(tmp_path, changes, problem):
     assert not (tmp_path / "refused_library" / "library.json").exists()
 
 
-def test_folders_that_are_no_library_are_refused(heavy, tmp_path):
-    with pytest.raises(CaseError, match="contains no library"):
-        Library(tmp_path)
-    (tmp_path / "library.json").write_text("{}")
-    with pytest.raises(RecordError, match="is damaged"):
-        Library(tmp_path)
-    text = (heavy.folder / "library.json").read_text()
-    (tmp_path / "library.json").write_text(text.replace('"version": "', '"version": "0.0.'))
-    with pytest.raises(CaseError, match="is a library of dembound 0"):
-        Library(tmp_path)
-
-
 CLOCK = RecordTimes(spacing=0.1, duration=1.0)
 
 
@@ -159,22 +147,6 @@ def test_values_between_lines_are_on_straight_lines_and_begin_later_under_a_wave
         on_spacing(wave(rows), CLOCK._replace(lead=3))
 
 
-@pytest.mark.parametrize(
-    ("rows", "problem"),
-    [
-        ([(-0.1, 0.0), (0.1, 1.0), (0.2, 0.0)], "begins at -0.1 s, must not begin before 0"),
-        ([(0.0, 0.0), (0.1, 1.0), (1.1, 0.0)], "lasts 1.1 s, the library only 1 s"),
-        ([(0.0, 0.0), (0.15, 1.0), (0.3, 0.0)], "has a value at 0.15 s, no whole multiple of the library's spacing"),
-        ([(0.0, 0.0), (0.1, 1.0), (0.10000001, 2.0), (0.2, 0.0)], "has values closer than the library's spacing"),
-        ([(0.0, 0.5), (0.1, 1.0), (0.2, 0.0)], "begins with 0.5, must begin with 0"),
-        ([(0.0, 0.0), (0.1, 1.0), (0.2, 0.25)], "ends with 0.25 before the library does, must end with 0"),
-    ],
-)
-def test_what_no_library_responds_to_is_said(rows, problem):
-    with pytest.raises(ValueError, match=problem):
-        on_spacing(wave(rows), CLOCK)
-
-
 @pytest.fixture
 def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -191,22 +163,3 @@ def test_arguments_name_inputs_and_files():
     both, one = read_records(["x=a.txt,y=b.txt", "y=b.txt"], ["x", "y"], CLOCK)
     assert (both.name, one.name, set(one.values)) == ("a_b", "b", {"y"})
     np.testing.assert_allclose(both.values["y"], [0.0, 2.0, 0.0])
-
-
-@pytest.mark.usefixtures("files")
-@pytest.mark.parametrize(
-    ("arguments", "inputs", "problems"),
-    [
-        (["a.txt"], ["x", "y"], ["RECORD: is a.txt, must be INPUT=FILE, or several with commas between; inputs: x, y"]),
-        (["x=a.txt,x=b.txt"], ["x", "y"], ["RECORD: x=a.txt,x=b.txt: names the input x twice"]),
-        (["bad.txt", "none.txt"], ["x"], [
-            "bad.txt: begins with 1, must begin with 0; put a line with 0 before it",
-            'no file "none.txt"',
-        ]),
-        (["a.txt", "x=a.txt"], ["x"], ["RECORD: two records are called a, so one would replace the other"]),
-    ],
-)  # fmt: skip
-def test_each_mistake_has_its_line(arguments, inputs, problems):
-    with pytest.raises(CaseError) as raised:
-        read_records(arguments, inputs, CLOCK)
-    assert raised.value.problems == problems

@@ -12,7 +12,7 @@ from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
 from dembound.studies.asked import Calibrating
 from dembound.studies.sweep.members import ENERGY, members_of, unit_of, variations
-from dembound.studies.sweep.perform import ALONE, MEMBERS, OUTCOMES, Outcome, forget_replaced, outcome_in, perform
+from dembound.studies.sweep.perform import ALONE, MEMBERS, outcome_in, perform
 
 
 def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
@@ -97,33 +97,3 @@ def test_a_stopped_member_is_continued_to_the_same_results(rods, task, tmp_path,
     assert perform(task(member)).values == whole.values
     summary = json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())
     assert [each["stage"] for each in summary["resumed"]] == [None]
-
-
-def test_a_checkpoint_of_another_case_is_not_continued(rods, task, tmp_path, monkeypatch) -> None:
-    (member,) = rods(12e6)
-    (other,) = rods(12e6, **{"bar.density": 2600.0})
-    assert member.name == other.name
-    with monkeypatch.context() as patch:
-        patch.setattr(
-            "dembound.studies.sweep.perform.Begun.running",
-            lambda self, run, steps: (tmp_path / "stop").touch(),
-        )
-        assert perform(task(other)) is None
-    (tmp_path / "stop").unlink()
-    perform(task(member))
-    assert json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())["resumed"] == []
-
-
-def test_damaged_outcomes_are_none_and_those_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
-    (tmp_path / OUTCOMES).mkdir()
-    outcome = Outcome("a", values={"x": 1.0}, warnings=["too short"])
-    outcome.write(tmp_path, "k")
-    assert outcome_in(tmp_path, "k") == outcome
-    for text in ("", "{", "[]", '{"name": 1, "more": 2}'):
-        (tmp_path / OUTCOMES / "k.json").write_text(text)
-        assert outcome_in(tmp_path, "k") is None
-    Outcome("a", folder="a").write(tmp_path, "run of a")
-    Outcome("a").write(tmp_path, "calibration of a")
-    Outcome("b", folder="b").write(tmp_path, "run of b")
-    forget_replaced(tmp_path, {"a"})
-    assert {path.stem for path in (tmp_path / OUTCOMES).iterdir()} == {"k", "calibration of a", "run of b"}

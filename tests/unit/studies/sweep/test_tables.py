@@ -83,16 +83,6 @@ def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
     assert figure.get_suptitle() == "β and $safety$"
 
 
-def test_requested_quantities_are_shown(swept) -> None:
-    def shown(*requested):
-        return Swept(swept.case, "run", swept.members, swept.outcomes, requested).shown
-
-    assert shown() == ["monitors.end.peak_velocity"]
-    assert shown("energy.kinetic") == ["energy.kinetic"]
-    with pytest.raises(CaseError, match=r"--quantity: is energy, must be one of monitors.end.peak_velocity, energy.k"):
-        shown("energy")
-
-
 def test_the_interval_is_students() -> None:
     """The squared deviations of 2, 4, 4, 4, 5, 5, 7, 9 add to 32; t(0.975) of 7 degrees is 2.364624 (tables)."""
     found = statistic({}, "x", [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0])

@@ -2,20 +2,17 @@
 
 import atexit
 import json
-import logging
 import multiprocessing
 import os
 import signal
 import time
-from concurrent.futures import Future
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 
 import pytest
 
-from dembound.errors import CaseError, RunError
 from dembound.studies.sweep.perform import MEMBERS
 from dembound.studies.sweep.study import Options, sweep
-from dembound.studies.sweep.workers import Cluster, cluster, processes
+from dembound.studies.sweep.workers import processes
 from dembound.version import __version__
 
 kills = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows has no SIGKILL")
@@ -77,58 +74,3 @@ def test_the_end_of_processes_is_not_waited_for_and_others_are_left_alone(tmp_pa
         assert own.is_alive()
     finally:
         own.kill()
-
-
-def test_a_cluster_that_does_not_answer_is_bad_input(monkeypatch) -> None:
-    pytest.importorskip("distributed", reason="Dask is not installed (dembound[cluster])")
-    monkeypatch.setattr("dembound.studies.sweep.workers.CONNECTING", 0.1)
-    for address in ("tcp://127.0.0.1:1",):
-        with pytest.raises(CaseError, match=f"--scheduler: {address} does not answer"), cluster(address):
-            pass
-
-
-class Client:
-    """A client of a Dask cluster: `workers` are its workers after each question, as versions of this package."""
-
-    def __init__(self, *workers) -> None:
-        self.status, self._workers, self.asked = "running", [{"a": each} if each else {} for each in workers], 0
-
-    def get_executor(self, pure):
-        return None
-
-    def scheduler_info(self):
-        self.asked += 1
-        return {"workers": self._workers[min(self.asked, len(self._workers)) - 1]}
-
-    def get_versions(self, packages):
-        known = {name: {"packages": {"dembound": version}} for name, version in self._workers[-1].items()}
-        return {"client": {"packages": {"dembound": "0.1.0"}}, "workers": known}
-
-
-def test_a_cluster_without_workers_is_said_once_and_workers_of_another_version_are_refused(monkeypatch, caplog) -> None:
-    pytest.importorskip("distributed", reason="Dask is not installed (dembound[cluster])")
-    monkeypatch.setattr("dembound.studies.sweep.workers.CONNECTING", 0.0)
-    monkeypatch.setattr("dembound.studies.sweep.workers.ASKING", 0.0)
-    caplog.set_level(logging.INFO)
-    Cluster(Client(None, None, "0.1.0"), "tcp://node1:8786").require_workers()
-    assert caplog.messages == ["--scheduler: tcp://node1:8786 has no worker yet, which is waited for"]
-    with pytest.raises(CaseError, match=r"its worker a has dembound 0\.0\.9, must have 0\.1\.0 as here"):
-        Cluster(Client("0.0.9"), "tcp://node1:8786").require_workers()
-
-
-def test_a_scheduler_that_is_lost_ends_a_sweep_whose_members_are_not_failed(rods, tmp_path, monkeypatch) -> None:
-    pytest.importorskip("distributed", reason="Dask is not installed (dembound[cluster])")
-    lost = Cluster(Client("0.1.0"), "tcp://node1:8786")
-
-    def submit(task):
-        performing = Future()
-        performing.cancel()
-        performing.set_running_or_notify_cancel()
-        return performing
-
-    monkeypatch.setattr(lost, "submit", submit)
-    monkeypatch.setattr("dembound.studies.sweep.study.cluster", lambda address: nullcontext(lost))
-    with pytest.raises(RunError, match="--scheduler: tcp://node1:8786 was lost; the same command continues"):
-        sweep(rods(1e6, 2e6), Options(scheduler="tcp://node1:8786"), tmp_path / "rod_sweep", lambda standing: None)
-    assert not list((tmp_path / "rod_sweep").glob("outcomes/*"))
-    assert list((tmp_path / "rod_sweep").glob("stop-*"))  # seen by members that are under way
