@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scene_tables import ISOTROPIC
-from small_cases import BODY, GRAINS, PUSHED, problems_in, problems_of, small
+from small_cases import BODY, GRAINS, PUSHED, problems_of, small
 
 from dembound.disks.pressure import in_run, membranes_of
 from dembound.disks.scene import DiskScene, build
@@ -87,22 +87,6 @@ def test_half_a_hole_beside_a_mirror_has_the_pressure_on_its_opening() -> None:
     np.testing.assert_allclose(force, [P * 4.6, 0.0], rtol=1e-12, atol=1e-9 * P)
     assert moment == pytest.approx(-P * 4.6 * 5.2, rel=1e-12)
     assert "of wall of hole h, (9.2, 0) MN/m in all, on" in dict(disk_facts(scene))["load p"]
-
-
-THIN = {"type": "ellipse", "centre": [6.0, 5.0], "semi_axes": [2.0, 0.1]}
-TWO = {"hole": [{"name": "h", **CIRCLE}, {"name": "g", **CIRCLE, "centre": [9.0, 5.2]}]}
-
-
-@pytest.mark.parametrize(
-    ("hole", "changes", "line"),
-    [
-        (THIN, {}, 'load.p.hole: "h" cuts no bonds of the body, so there'),
-        (CIRCLE, TWO, 'load.p.hole: "h" has no wall near ('),
-    ],
-)
-def test_an_outline_that_is_not_a_wall_is_refused(hole: dict, changes: dict, line: str) -> None:
-    (found,) = problems_in(lambda: pressed(LATTICE, hole, changes).steady_load)
-    assert found.startswith(line)
 
 
 @pytest.mark.parametrize(("x", "is_near"), [(2.7, True), (2.9, False)])

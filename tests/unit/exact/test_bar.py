@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from dembound.exact import Lattice, bar_stress, bar_velocity, cells_per_wavelength, courant_limit, triangle_spall
-from dembound.exact.bar import End, usual_shares
+from dembound.exact.bar import End
 
 LENGTH, SPEED, IMPEDANCE = 3.0, 2000.0, 5e6
 WAIT = LENGTH / SPEED
@@ -140,34 +140,3 @@ def test_wavelengths_of_so_many_cells_and_all_longer_ones_keep_to_the_error(hori
     assert np.all(np.abs(speed(np.linspace(0.0, 0.999 * phase, 1000)) - 1.0) < 0.01)
     assert abs(float(speed(1.001 * phase)) - 1.0) > 0.01
     assert cells_per_wavelength(1, 1.0, of=of) == 2.0  # there is no error at all
-
-
-@pytest.mark.parametrize(
-    ("make", "given", "said"),
-    [
-        *((Lattice, each, "must") for each in ((0, 1, 1, 1), (1, 0, 1, 1), (1, 1, -1, 1), (1, 1, 1, np.inf))),
-        *((Lattice, (2, 1.0, 1.0, 1.0, each), "shares") for each in ((1.0,), (0.4, 0.5))),
-        (cells_per_wavelength, (1, 1.01), r"Courant number \(1.01\) must not be above 1"),
-        (cells_per_wavelength, (1, 0.5, 1.0), "error"),
-        # a crest below the strength breaks nothing
-        *((triangle_spall, (LENGTH, SPEED, 1e-4, 1e-4, CREST, each), "strength") for each in (0.0, 1.001 * CREST)),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, given: tuple, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        make(*given)
-
-
-@pytest.mark.parametrize("horizon", HORIZONS)
-def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
-    shares = usual_shares(horizon)
-    courant = 0.9 * courant_limit(horizon)
-    usual, given = lattice(horizon, courant), Lattice(horizon, 1.0, courant, 1.0, shares)
-    phase = np.linspace(0.0, 3.1, 200)
-
-    # sums of m terms of order 1; of the group velocity the closed form vanishes where the sum has its rounding
-    np.testing.assert_allclose(given.frequency(phase), usual.frequency(phase), rtol=1e-13 * horizon)
-    np.testing.assert_allclose(given.group_velocity(phase), usual.group_velocity(phase), atol=1e-13 * horizon)
-    assert given.courant_limit == pytest.approx(courant_limit(horizon), rel=1e-12)
-    cells = cells_per_wavelength(horizon, courant)
-    assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(cells, rel=1e-10)

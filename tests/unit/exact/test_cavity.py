@@ -61,22 +61,6 @@ def test_motion_obeys_hookes_and_newtons_laws() -> None:
 ONCE, INSIDE = np.array([0.1]), np.array([[9.9, 0.0]])
 
 
-@pytest.mark.parametrize(
-    ("make", "given", "said"),
-    [
-        (cavity_motion, (ONCE, 9.0, pulse, RADIUS, SOLID), "inside the cavity"),
-        (cavity_motion, (ONCE, 9.0, pulse, 0.0, SOLID), "radius"),
-        (scattered_motion, (ONCE, INSIDE, PlaneWave("p", 0.0, pulse), RADIUS, SOLID), "outside the cavity"),
-        (scattered_motion, (ONCE, INSIDE, PlaneWave("p", 0.0, pulse), 0.0, SOLID), "radius"),
-        *((Solid, (2500.0, *speeds), "speeds must be") for speeds in ((1000.0, 0.0), (1000.0, 1000.0), (-1.0, 0.5))),
-        (Solid, (0.0, 1000.0, 500.0), "density"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, given: tuple, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        make(*given)
-
-
 LONG = 0.06
 
 

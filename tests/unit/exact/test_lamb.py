@@ -25,12 +25,6 @@ S_SPEEDS = [P_SPEED / math.sqrt(2.0), P_SPEED / math.sqrt(3.0), P_SPEED / 2.0, P
 Load = Callable[[np.ndarray], np.ndarray]
 
 
-def splines(t: np.ndarray) -> np.ndarray:
-    """Z eq. 19 with T0 = 0.5 s, P0 = 450 kN: cubics that join with a jump in the third derivative."""
-    knots = np.maximum(np.asarray(t)[..., None] / 0.5 - np.arange(5) / 4.0, 0.0)
-    return 450e3 * 16.0 * (knots**3 @ np.array([1.0, -4.0, 6.0, -4.0, 1.0]))
-
-
 def decaying(t: np.ndarray) -> np.ndarray:
     return (t / 0.02) ** 3 * np.exp(-t / 0.02)
 
@@ -204,25 +198,3 @@ def test_before_echoes_it_is_the_cavity_with_the_same_moment() -> None:
         found = buried_explosion(times + advance, *place, deep, signal, solid, 1e-5)
         # linear interpolation over 60 µs of a pulse of 10 ms errs by (2π·60e-6/0.01)²/8 = 2e-4
         np.testing.assert_allclose(found, direction[:, None] * history, rtol=0.0, atol=5e-4 * np.abs(history).max())
-
-
-ONCE = np.array([0.1])
-
-
-@pytest.mark.parametrize(
-    ("make", "given", "said"),
-    [
-        (rayleigh_speed, (100.0, 100.0), "speeds must be"),
-        (surface_displacement, (ONCE, 1.0, splines, 2500.0, 300.0, 0.0), "speeds must be"),
-        (surface_displacement, (ONCE, 0.0, splines, 2500.0, 300.0, 100.0), "must be positive"),
-        (surface_displacement, (ONCE, 1.0, splines, -1.0, 300.0, 100.0), "must be positive"),
-        (buried_displacement, (ONCE, 0.0, 1.0, decaying, SOLIDS[0]), "must be positive"),
-        (buried_displacement, (ONCE, 1.0, 0.0, decaying, SOLIDS[0]), "must be positive"),
-        (moved, (ONCE, 1.0, 0.0, SOLIDS[0], 0.0), "depths must be"),
-        (moved, (ONCE, 1.0, -1.0, SOLIDS[0]), "depths must be"),
-        (moved, (ONCE, 0.0, DEPTH, SOLIDS[0]), "at the source"),
-    ],
-)
-def test_what_is_not_a_half_space_is_refused(make, given: tuple, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        make(*given)

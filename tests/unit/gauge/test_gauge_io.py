@@ -1,16 +1,12 @@
 """Gauges and free ends read from text and from records."""
 
-from pathlib import Path
-
 import h5py
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError
 from dembound.gauge.gauge_io import BarMetadata, read_free_end, read_gauge
-from dembound.gauge.reading.signal import Reading
 
-BAR = {"position": 0.6, "length": 0.99}
 VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
 
 
@@ -58,30 +54,6 @@ def test_a_record_knows_its_bar_unless_given_otherwise(record, felt):
 
 MISSING = ["--position: is missing, must be the gauge's place (m) from the loaded end"]
 MISSING += ["--length: is missing, must be that of the bar (m)"]
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({}, MISSING),
-        (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
-        (
-            BAR | {"length": 990.0},
-            ["--length: is 990 m, must be at most 100 m; positions and lengths are in m, not mm"],
-        ),
-        (BAR | {"reading": Reading(scale=0.0)}, ["--scale: is 0, must be finite and not 0"]),
-        (BAR | {"monitor": "near"}, ["--monitor: is for results of a run, gauge.csv is a text file"]),
-        (
-            {"position": 0.6, "length": 0.0, "density": np.nan},
-            ["--length: is 0 m, must be finite and above 0", "--density: is nan kg/m³, must be finite and above 0"],
-        ),
-    ],
-)
-def test_gauges_beside_the_bar_are_refused(text, monkeypatch, given, said):
-    monkeypatch.chdir(text.parent)
-    with pytest.raises(CaseError) as caught:
-        read_gauge(Path(text.name), **given)
-    assert caught.value.problems == said
 
 
 def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):

@@ -7,7 +7,6 @@ import pytest
 
 from dembound.errors import PackingError
 from dembound.kernels import pack
-from dembound.packings import bed as module
 from dembound.packings import dense
 from dembound.packings.bed import Bed
 from dembound.packings.brick import listed, strip_order, wrap
@@ -136,13 +135,6 @@ def test_three_contacts_hold_a_disk():
     ring = 10.0 + 1.99 * np.column_stack([np.cos(angles), np.sin(angles)])
     bed = Bed(BOX, np.vstack([ring, [[10.0, 10.0], [2.0, 2.0]]]), np.ones(5), held=3)
     assert bed.loose().tolist() == [False, False, False, False, True]
-
-
-def test_running_out_of_steps_is_an_error(monkeypatch):
-    monkeypatch.setattr(module, "MAX_STEPS", 2)
-    bed = Bed(BOX, np.array([[5.0, 5.0], [6.0, 5.0]]), np.ones(2), held=0)
-    with pytest.raises(PackingError, match="did not come to rest"):
-        bed.relax(1e-9, faint=1e-3)
 
 
 def plain_forces(bed):

@@ -135,17 +135,6 @@ def test_a_damaged_file_is_packed_again_and_replaced(packer, own_cache, caplog):
     assert caplog.messages == [f"the cached brick {path} is damaged, it is packed again"] * len(damaged)
 
 
-def test_the_folder_can_move_and_need_not_be_writable(packer, own_cache, tmp_path, monkeypatch):
-    load_or_pack(KEY, packer)
-    own_cache.rename(tmp_path / "elsewhere")
-    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "elsewhere"))
-    load_or_pack(KEY, packer)
-    assert packer.calls == 1
-    (tmp_path / "file").write_text("in the way")
-    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "file" / "bricks"))
-    assert len(load_or_pack(KEY, packer).radii) == 1
-
-
 def test_other_parameters_are_another_brick_and_clear_counts_what_it_deletes(packer):
     assert clear() == 0
     load_or_pack(KEY, packer)

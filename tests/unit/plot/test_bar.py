@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from matplotlib.collections import PathCollection
 
-from dembound.errors import CaseError
 from dembound.plot.bar import plot_bar, plot_bar_field
 
 
@@ -18,13 +17,6 @@ def recorded(spalled_run) -> dict[str, np.ndarray]:
         others = {name: np.array([each[name][:] for each in groups]) for name in ("stress", "damage")}
         cracks = {f"crack_{name}": file["cracks"][name][:] for name in ("time", "position")}
         return {**motions, **others, **cracks, "time": np.array([each.attrs["time"] for each in groups])}
-
-
-@pytest.fixture
-def changed(spalled_run, copied):
-    """A copy of the record, to change it."""
-    with copied(spalled_run) as file:
-        yield file
 
 
 def picture_of(panel):
@@ -78,18 +70,3 @@ def test_one_field_is_shown_at_all_snapshots_or_one(spalled_run, recorded, field
     (panel,) = plot_bar_field(spalled_run, field, snapshot).axes
     np.testing.assert_array_equal(panel.lines[0].get_ydata(), recorded[field][snapshot] / scale)
     assert panel.get_ylabel() == label
-
-
-def test_a_bar_at_rest_is_drawn_and_what_a_bar_does_not_have_is_refused(changed, run):
-    for snapshot in changed["snapshots"].values():
-        snapshot["stress"][:] = 0.0
-    changed.flush()
-    assert picture_of(plot_bar_field(run, "stress").axes[0]).get_clim() == (-1.0, 1.0)
-    with pytest.raises(CaseError, match="field: is stress_xx, must be one of stress, damage, velocity, displacement"):
-        plot_bar_field(run, "stress_xx")
-    with pytest.raises(CaseError, match="no snapshot 12, they are 0 to 11"):
-        plot_bar_field(run, "stress", 12)
-    del changed["snapshots"]
-    changed.flush()
-    with pytest.raises(CaseError, match=r"has no snapshots, run with output\.snapshots above 0"):
-        plot_bar(run)

@@ -2,10 +2,8 @@
 
 import h5py
 import numpy as np
-import pytest
 from matplotlib.collections import EllipseCollection, PathCollection
 
-from dembound.errors import CaseError
 from dembound.plot.moving import MovingBar, MovingScene
 
 
@@ -84,13 +82,3 @@ def test_a_bar_is_drawn_along_itself_with_the_bonds_broken_so_far(spalled_run):
         places = file["particles/position"][:, 0] + 30.0 * last["displacement"][:, 0]
         (line,) = moved.figure.axes[0].lines
         np.testing.assert_allclose(line.get_data(), [places, last["velocity"][:, 0]], rtol=1e-12)
-
-
-def test_what_cannot_be_drawn_is_said(small_run, other_run, spalled_run):
-    with pytest.raises(CaseError, match=r"has no snapshots, run with output\.snapshots above 0"):
-        MovingScene(other_run)
-    for name in ("peak", "damage"):
-        with pytest.raises(CaseError, match=f"field: is {name}, must be one of velocity, displacement, "):
-            MovingScene(small_run, name)
-    with pytest.raises(CaseError, match="field: is peak, must be one of stress, damage"):
-        MovingBar(spalled_run, ["peak"])

@@ -4,7 +4,6 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
 from dembound.plot.record import plot_spectra
 from dembound.plot.spectra import plot_fourier, plot_response, plot_transfer
 from dembound.results.histories import read_histories
@@ -66,30 +65,6 @@ def test_response_spectra_are_those_of_accelerations(known_run):
     assert periods[[0, -1]] == pytest.approx([8 * STEP, COUNT * STEP])
     expected = response_spectrum(acceleration, STEP, periods[40:42]).pseudo_acceleration
     np.testing.assert_allclose(line.get_ydata()[40:42], expected)
-
-
-@pytest.mark.parametrize(
-    ("draw", "keys", "problem"),
-    [
-        (plot_transfer, {"reference": "nowhere"}, "--reference: is nowhere, must be one of back, "),
-        (plot_transfer, {"reference": "front", "monitors": ["front"]}, "--monitor: names only the monitor that is"),
-        (plot_response, {"component": "rotation"}, "a response spectrum is of x or y"),
-        (plot_fourier, {"quantity": "displacement"}, "nothing moves at these monitors"),
-    ],
-)
-def test_what_cannot_be_shown_is_said(known_run, draw, keys, problem):
-    with pytest.raises(CaseError, match=problem):
-        draw([known_run], **keys)
-
-
-def test_twins_and_enough_samples_are_needed(known_run, small_run, run, copied):
-    with pytest.raises(CaseError, match="these runs have no free-field twins"):
-        plot_transfer([small_run])
-    with copied(known_run) as file:
-        for column in file["histories/front"].values():
-            column.resize(15, axis=0)
-    with pytest.raises(CaseError, match="monitor front: has 15 samples, a spectrum needs at least 16"):
-        plot_fourier([run])
 
 
 HEIGHT, LENGTH = 0.8, 0.05  # m/s, s
