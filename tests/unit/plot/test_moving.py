@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 from matplotlib.collections import EllipseCollection, PathCollection
 
-from dembound.plot.moving import MovingBar, MovingScene
+from dembound.plot.moving import MovingScene
 
 
 def one(panel, kind):
@@ -54,31 +54,3 @@ def test_disks_and_cracks_are_moved_by_their_exaggerated_displacements(cracked_r
         if chosen.any():
             mean = displacement[cracks["particles"][chosen]].mean(axis=1)
             np.testing.assert_allclose(marks[label], cracks["position"][chosen] + mean, rtol=1e-12)
-
-
-def test_a_bar_is_drawn_along_itself_with_the_bonds_broken_so_far(spalled_run):
-    bar = MovingBar(spalled_run)
-    with h5py.File(spalled_run) as file:
-        groups = list(file["snapshots"].values())
-        stresses = np.array([group["stress"][:] for group in groups]) / 1e6
-        times, places = file["cracks/time"][:], file["cracks/position"][:, 0]
-        np.testing.assert_allclose(bar.times, [group.attrs["time"] for group in groups], rtol=1e-12)
-    limits = set()
-    for index in (0, len(groups) - 1):
-        bar.frame(index, 300)
-        stress = bar.figure.axes[0]
-        np.testing.assert_array_equal(stress.lines[0].get_ydata(), stresses[index])
-        limits.add((stress.get_xlim(), stress.get_ylim()))
-        broken = places[times <= bar.times[index] * (1.0 + 1e-12)]
-        marks = [each for each in stress.collections if isinstance(each, PathCollection)]
-        assert len(marks) == (len(broken) > 0)
-        if len(broken) > 0:
-            np.testing.assert_allclose(marks[0].get_offsets()[:, 0], broken)
-    assert len(limits) == 1
-    moved = MovingBar(spalled_run, ["velocity"], exaggerate=30.0)
-    moved.frame(11, 300)
-    with h5py.File(spalled_run) as file:
-        last = file["snapshots/0011"]
-        places = file["particles/position"][:, 0] + 30.0 * last["displacement"][:, 0]
-        (line,) = moved.figure.axes[0].lines
-        np.testing.assert_allclose(line.get_data(), [places, last["velocity"][:, 0]], rtol=1e-12)

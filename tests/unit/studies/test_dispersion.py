@@ -1,6 +1,5 @@
 """Lattices from numbers and from cases, their table, and the frequencies that simulations have."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from dembound.errors import CaseError
 from dembound.exact import Lattice, courant_limit
 from dembound.kinds import loads, with_changes
 from dembound.starting import starting_point
-from dembound.studies.dispersion import COLUMNS, ROWS, lattices, lattices_of, measure, write_table
+from dembound.studies.dispersion import lattices, lattices_of, measure
 
 STARTER = starting_point()
 
@@ -48,30 +47,6 @@ def test_all_combinations_are_made_of_numbers_that_make_sense():
     # the largest step is that of two spacings to the horizon, √2Δx/c = √2·4 µs
     assert refused.value.problems == ["--time-step: is 0.001 s, must not be above the stability limit 5.65685e-06 s"]
     assert len(lattices([1, 2], [0.01, 0.005], [1e-3, 5.6e-6], 2500.0)) == 8
-
-
-def test_table_holds_the_curves(tmp_path):
-    stable, unstable = lattices([1], [0.005], [1e-6, 3e-6], 2500.0)
-    shares = [(0.25, 0.75), (1.0 / 3.0, 2.0 / 3.0)]
-    others = [Lattice(2, 0.005, 1e-6, 2500.0, each) for each in shares]
-    write_table([stable, unstable, *others], tmp_path / "table.csv")
-    with (tmp_path / "table.csv").open(newline="") as file:
-        head, *lines = csv.reader(file)
-    assert tuple(head) == COLUMNS
-    assert len(lines) == 4 * ROWS
-    assert [line[4] for line in lines[::ROWS]] == ["", "", "0.25/0.75", "0.3333333333/0.6666666667"]
-    numbers = np.array([line[:4] + line[5:] for line in lines[:ROWS]], dtype=float)
-    assert np.all(numbers[:, :4] == [1, 0.005, 1e-6, 2500.0])
-    wavenumber = numbers[:, 4]
-    assert wavenumber[-1] == pytest.approx(stable.shortest, rel=1e-9)  # written with ten digits, here and below
-    np.testing.assert_allclose(numbers[:, 5], 2.0 * np.pi / (wavenumber * 0.005), rtol=1e-9)
-    np.testing.assert_allclose(numbers[:, 6], stable.frequency(wavenumber) / (2.0 * np.pi), rtol=1e-9)
-    np.testing.assert_allclose(numbers[:, 7], stable.phase_velocity(wavenumber), rtol=1e-9)
-    # wave numbers are rounded by up to 5e-8 rad/m, and the group velocity changes by up to cΔx = 12.5 m²/s
-    np.testing.assert_allclose(numbers[:, 8], stable.group_velocity(wavenumber), rtol=0, atol=1e-6)
-    assert lines[2 * ROWS - 1][7:] == ["", "", ""]
-    assert "" not in lines[ROWS][5:]
-    assert lines[3 * ROWS - 1][7:] != lines[4 * ROWS - 1][7:]
 
 
 @pytest.mark.parametrize(

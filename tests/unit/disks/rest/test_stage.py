@@ -23,23 +23,6 @@ K = 2500.0 * 1000.0**2
 """Normal stiffness of a lattice contact and its bond, N/m."""
 
 
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
-def test_a_lattice_sinks_under_its_weight_as_its_columns_say(bar, law: str) -> None:
-    looks: list[tuple[int, float]] = []
-    body = scene(bar, **{**STANDING, "material.law": law})
-    settled = settle(body, lambda steps, ratio, _: looks.append((steps, ratio)))
-    # disk by disk from below: the contacts carry the weight of three, two and one disks
-    sunk = np.cumsum([0.0, 3.0, 2.0, 1.0]) * MASS * G / K
-    found = np.sort(settled.start.displacement[1])[::-1].reshape(4, 2)
-
-    # the ratio of 1e-8 leaves 1e-8 of the mean contact force; four springs in a row; half of that for moved normals
-    np.testing.assert_allclose(found, np.repeat(-sunk[:, None], 2, axis=1), atol=1e-6 * sunk[-1])
-    assert settled.ratio <= 1e-8 < min(ratio for _, ratio in looks[:-1])
-    # two disks carry all eight: three each besides their own weight
-    assert settled.mean_reaction == pytest.approx(4.0 * MASS * G, rel=1e-6)
-    assert settled.mean_residual < 1e-7 * settled.mean_reaction
-
-
 def test_bonds_may_break_on_the_way_and_stay_broken(bar) -> None:
     hanging = {"packing.size": [0.5, 4.0], "motion.held": ["x", "rotation"], "material.law": "linearpbond"}
     # the top bond of eight would carry seven weights over 0.5 m: 7 · 625 · 9.81/0.5 Pa

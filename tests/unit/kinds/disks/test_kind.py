@@ -15,7 +15,7 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds.disks.kind import Disks
 from dembound.kinds.disks.mesh import continuum_mesh
-from dembound.kinds.disks.summary import asked_stress, describe_static, disk_outcome, summarise_disks
+from dembound.kinds.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.motion.simulation import Simulation
 from dembound.results.vtk import write_paraview
 from dembound.running import plan, preflight
@@ -99,45 +99,6 @@ def test_the_summary_of_disks_is_plain_json(bar, law: str) -> None:
     assert (found["particles"], found["contacts"], found["loose_disks_left_out"]) == (40, 2 * 19 + 20, 0)
     assert found["has_history"] == (law == "linearpbond")
     assert found["boundaries"]["right"]["peak_velocity"][0] > 0.4  # of a pulse of 0.5 m/s
-
-
-def test_only_what_applies_is_reported() -> None:
-    elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
-    elastic |= {"seconds": {"settle": 4.2}, "reduced": [], "not_reduced": [], "load_factor": None}
-    quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "elastic": True}
-    settled |= dict.fromkeys(("before", "asked", "column"))
-    steps = "3,100 steps, unbalanced force ratio 9.8e-06"
-    stage, took = f"static stage: {steps}", "; 4.2 s"
-
-    assert disk_outcome(elastic) == []
-    said = "contacts slid or opened while the body settled, so that its rest is one of several: dembound estimate says"
-    assert disk_outcome(elastic | {"static": settled | {"elastic": False}})[1].startswith(said)
-    first = {"factor": 1.25, "limit": "slides", "time": 0.5, "position": [3.0, 4.0], "particles": [1, 2]}
-    assert disk_outcome(elastic | {"load_factor": first}) == [
-        "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"
-    ]
-    draw = ", one draw of many: see dembound estimate --repeat"
-    broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
-    assert disk_outcome(elastic | quiet | broken) == [
-        f"{stage}, breaking 1,100 bonds{took}",
-        "elastic law all through",
-        f"1,230 bonds broke in all (1,200 tension, 30 shear){draw}",
-    ]
-    at_rest = {"cracks": {"tension": 20, "shear": 4}, "static": settled | {"cracks": 24}}
-    assert disk_outcome(elastic | quiet | at_rest)[::2] == [
-        f"{stage}, breaking 24 bonds{took}",
-        "bonds broke only in the static stage (20 tension, 4 shear)",
-    ]
-    even = {"block": [5.0, 6.25], "deviation": 0.0123, "packing": 1e-6, "beyond": 0.0123, "near_holes": None}
-    pressed = settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3], "uniformity": even}
-    reached = f"{stage}, stress (-0.5, -2, 0) of (-1, -2, 0) MPa requested, within 1.2 % in blocks of"
-    assert disk_outcome(elastic | {"static": pressed}) == [f"{reached} 5 m × 6.25 m{took}"]
-    excavated = {"static": settled | {"steps": 900, "before": settled}}
-    assert disk_outcome(elastic | excavated) == [
-        f"static stage before the excavation: {steps}",
-        f"static stage after the excavation: 900 steps, unbalanced force ratio 9.8e-06{took} for all stages",
-    ]
 
 
 def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
