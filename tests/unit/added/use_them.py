@@ -6,7 +6,6 @@ Prints what comes out as JSON.
 import json
 import sys
 import warnings
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,24 +17,16 @@ with warnings.catch_warnings(record=True) as said:
     import dembound.kinds as kinds
 
 from dembound.accuracy.estimate import advise, causes_of
-from dembound.accuracy.of_disks.coarser import coarser
-from dembound.accuracy.of_disks.law import elastic_twin
-from dembound.accuracy.of_disks.options import Options
-from dembound.accuracy.runner import Runner
 from dembound.casefile.types import BOUNDARIES
-from dembound.disks.matching import Held
 from dembound.disks.reflection import measure_side
-from dembound.disks.scene import build
 from dembound.disks.trials import trials_of_disks
 from dembound.errors import CaseError, RunError
 from dembound.formulas.history import History
-from dembound.kinds.bar.summary import cells_of_waves
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 from dembound.studies.asked import Calibrating
 from dembound.studies.calibration import calibrate
-from dembound.studies.dispersion import lattices_of, measure
 from dembound.studies.library.build import build_library
 
 GROUND = {
@@ -44,18 +35,6 @@ GROUND = {
     "boundary": {"left": {"type": "other_input", "wave_s": "bell"}, "right": {"type": "viscous"}},
     "wave": {"bell": {"type": "gauss", "amplitude": 0.5, "width": 0.004}},
     "monitor": [{"name": "middle", "position": [10.25, 1.25]}],
-    "run": {"duration": 0.03},
-}
-BAR = {
-    "bar": {"length": 1.0, "spacing": 0.01, "density": 2500.0, "wave_speed": 2000.0},
-    "method": {"type": "cone", "horizon": 3},
-    "boundary": {"left": {"type": "velocity", "wave_p": "bell"}},
-    "wave": {"bell": {"type": "gauss", "amplitude": 0.5, "width": 2e-5}},
-    "run": {"duration": 1e-4},
-}
-TWO = {
-    "packing": {"pattern": "A", "size": [1.0, 0.5], "radius": 0.25},
-    "material": {"density": 2500.0, "law": "tips", "tip": 1e9},
     "run": {"duration": 0.03},
 }
 PERIODIC = {"type": "periodic"}
@@ -116,54 +95,8 @@ def halved(made) -> dict[str, list]:
     }
 
 
-def bounced(made) -> list:
-    """Steps in which two disks touch, the length of a step, their speeds after it, and the laws in use."""
-    planned = plan(made)
-    run = Simulation(planned.scene, 1e-4)
-    run.state.velocity = np.array([[1e-3, -1e-3], [0.0, 0.0], [0.0, 0.0]])
-    ledger = Ledger(run, 1)
-    run.track(ledger)
-    run.run(3000)
-    touching = sum(entry.contact > 0.0 for entry in ledger.entries)
-    return [touching, 1e-4, run.state.velocity[0].tolist(), run.state.laws]
-
-
-def run(made: Any) -> tuple[dict[str, History], int]:
-    """Records of the monitors of a run along x and y, as an estimate reads them, and its work."""
-    done = Runner().run(made)
-    motions = {
-        name: replace(each, values={key: values[:, :2] for key, values in each.values.items()})
-        for name, each in done.motions.items()
-    }
-    return motions, done.work
-
-
-def held(made: Any) -> list[list[float]]:
-    """Springs per metre of the right side, for a case and for disks three times as large; or an error message."""
-    scene = build(made)
-    try:
-        larger = build(coarser(made, scene, plan(made).time_step, 1.5).case)
-    except CaseError as error:
-        return [list(error.problems)]
-    return [Held.of(each, "right").stiffness.tolist() for each in (scene, larger)]
-
-
-def larger(made: Any) -> list[Any]:
-    """Whether disks only discretise the ground, and the radius of disks half as large that make the same one."""
-    options = Options(plan(made), 0.01, ())
-    found = options.of(0.5)
-    return [0.5 in options.factors, found[0].case.packing.radius if found else None]
-
-
 strong = {"law": "brittle", "contact_share": 0.0, "pb_ten": 1e9, "pb_coh": 1e9}  # bonds alone, which hold
 brittle = case(**STRIP, **{f"material.{key}": value for key, value in strong.items()})
-
-
-def twin_of(made: Any) -> str | None:
-    """The law of a case that may replace its own."""
-    planned = plan(made)
-    found = elastic_twin(made, planned, 1e6, (), Runner())
-    return None if found is None else found.case.material.law
 
 
 def refusals(made: Any) -> dict[str, list[str]]:
@@ -184,14 +117,10 @@ hexagonal = {"packing.pattern": "hexagonal", "material.law": "elastic", "monitor
 whole = hexagonal | {"packing.size": [5.0, 5.19615]}
 half = {"type": "viscous", "half_mass": True}
 full = calibrate(strip, "right", Calibrating(full=True))
-bar = case(BAR)
-lattices, rod = lattices_of(bar), plan(bar).scene
-wavenumbers = lattices[0].shortest * np.array([0.2, 0.5, 0.9])
 json.dump(
     {
         "types": [table.__name__ for table in BOUNDARIES],
         "warnings": [str(each.message) for each in said],
-        "tips": bounced(case(TWO)),
         "linear": stepped(case(**{"packing.size": [20.0, 5.0], "hole": [DIAMOND]})),
         "hexagonal steps": stepped(case(**whole)),
         "not whole": refused(lambda: case(**hexagonal, **{"packing.size": [20.0, 5.0]})),
@@ -202,12 +131,6 @@ json.dump(
         "calibrated side": [full.kind, full.result, full.ratio[-1]],
         "late": failure(kinds.with_changes(strip, {"boundary.left.type": "late_input"})),
         "let in": calibrate(strip, "left").kind,
-        "frequencies": measure(lattices[0], wavenumbers).tolist(),
-        "formula": lattices[0].frequency(wavenumbers).tolist(),
-        "usual": replace(lattices[0], shares=None).frequency(wavenumbers).tolist(),
-        "limit": [rod.step_limit(), lattices[0].courant_limit * lattices[0].spacing / 2000.0],
-        "cells": cells_of_waves(rod, 1e-7)["bell"][1],
-        "twin": twin_of(brittle),
         "shortened": calibrate(brittle, "right").shortened,
         "rubber": refusals(case(**STRIP, **{"material.law": "rubber"})),
     },
