@@ -147,7 +147,7 @@ WAVED: Tables = SURROUNDED | {
     "incident": {"type": "sv", "angle": 20.0, "wave": "ramp", "point": [0.0, 0.0]},
     "wave": {"ramp": {"type": "constant", "amplitude": 0.1, "rise": 0.05, "start": 0.01}},
     "output": {"history_interval": 1e-3, "side_interval": 1e-3, "energy_interval": 1e-3, "snapshots": 2},
-    "outside": {"order": 3, "element": 3.0, "accuracy": 1e-2, "margin": 1, "layers": 2, "reflection": 1e-3}
+    "outside": {"order": 4, "element": 3.0, "accuracy": 1e-2, "margin": 1, "layers": 2, "reflection": 1e-3}
     | {"shift": 0.3, "delay": 0.1, "damping": 0.1},
     "run": {"duration": 0.02, "safety": 0.8, "checkpoint": 10.0, "until": "silent"}
     | {"silent_level": 1e-2, "silent_for": 0.005},

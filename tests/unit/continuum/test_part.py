@@ -103,7 +103,7 @@ def dense_limit(body: GridBody, delay: float) -> float:
 @pytest.mark.parametrize("medium", [ROCK, Layered((ROCK, SOIL), (4.0,))])
 def test_the_step_limit_counts_the_delay(medium: Medium | Layered) -> None:
     delay = 0.5
-    mesh = Mesh.uniform(order=3, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
+    mesh = Mesh.uniform(order=4, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
     body = GridBody(mesh=mesh, medium=medium, absorption=Absorption(delay=delay))
 
     # the iteration ends within 1e-3 of ω², on the safe side
