@@ -26,10 +26,10 @@ DURATION = 0.25
     ("box", "pattern", "fric", "wave"),
     [
         ("all of the ground", "B", 0.5, "wave_s"),
-        ("in the middle", "A", 0.0, "wave_s"),
+        pytest.param("in the middle", "A", 0.0, "wave_s", marks=pytest.mark.slow),
         ("up to the surface", "C", 0.5, "wave_p"),
         ("from the foot", "A", 0.5, "wave_p"),
-        ("at the side", "B", 0.5, "wave_s"),
+        pytest.param("at the side", "B", 0.5, "wave_s", marks=pytest.mark.slow),
     ],
 )
 def test_it_does(lab, box: str, pattern: str, fric: float, wave: str) -> None:

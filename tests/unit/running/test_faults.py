@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
-from itertools import cycle
 from pathlib import Path
 
 import h5py
@@ -253,34 +252,6 @@ def test_a_damaged_record_is_not_continued(folder, tmp_path) -> None:
     with pytest.raises(RecordError, match="do not increase"):
         resume_case(folder, until=0.03)
     assert [path.name for path in tmp_path.iterdir()] == ["bar"]
-
-
-def parts_of(record) -> list[str]:
-    names: list[str] = []
-    with h5py.File(record) as file:
-        file.visit(names.append)
-    return names
-
-
-def contents(folder) -> dict[Path, bytes]:
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-def test_a_record_that_lacks_any_part_is_not_continued(folder, tmp_path) -> None:
-    whole = (folder / "run.h5").read_bytes()
-    parts = list({part.split("/")[0]: part for part in parts_of(folder / "run.h5")}.values())  # one of each group
-    # complete, or not, in turn
-    unfinished = shutil.copytree(folder, tmp_path / "other" / "bar.partial")
-    for part, own in zip(parts, cycle((folder, unfinished)), strict=False):
-        with h5py.File(own / "run.h5", "a") as file:
-            del file[part]
-        before = contents(tmp_path)
-        with pytest.raises(RecordError, match=r"run\.h5: cannot be continued: it lacks ") as refused:
-            resume_case(own, until=0.03)
-        assert len(str(refused.value).splitlines()) == 1
-        assert contents(tmp_path) == before, part
-        (own / "run.h5").write_bytes(whole)
-    assert resume_case(folder, until=0.03).name == "bar"
 
 
 def test_a_checkpoint_of_another_version_is_refused(tmp_path, monkeypatch) -> None:
