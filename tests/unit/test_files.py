@@ -2,23 +2,19 @@
 
 import csv
 import os
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from dembound.accuracy.chart.record import OWN, record_in
 from dembound.errors import RecordError
-from dembound.files import content_of, copy, lock_of, make_folder, remove, replacing_by_name
+from dembound.files import copy, replacing_by_name
 from dembound.plot.style import save
 from dembound.results.checkpoint import Checkpoint
 from dembound.results.committed import changed_file, new_file
 from dembound.results.folder import Folder
-from dembound.results.summary import read_json
 from dembound.results.text_files import write_csv, write_json
-from dembound.studies.sweep.perform import outcome_in, times_in
 
 STATE = Checkpoint({"version": "1"}, {"a": np.zeros(3)})
 
@@ -87,44 +83,6 @@ def test_nothing_is_written_through_what_is_planted(name, kind, planted, tmp_pat
         assert [path.name for path in (tmp_path / kind).iterdir()] == [place]
         (tmp_path / kind / place).unlink()
     write(tmp_path / kind / "file")
-
-
-@pytest.mark.parametrize("kind", ["link", "nowhere", "pipe"])
-def test_nothing_planted_is_read_removed_or_locked(kind, planted, tmp_path) -> None:
-    (tmp_path / "a" / "outcomes").mkdir(parents=True)
-    for place, act in (
-        ("x", lambda path: content_of(path, 10)),
-        ("x", remove),
-        ("x", lock_of),
-        ("x", Checkpoint.read),
-        ("x", read_json),
-        ("x", lambda path: copy(path, path.with_name("copy"))),
-        ("outcomes/k.json", lambda path: outcome_in(tmp_path / "a", "k")),
-        *((name, lambda path: record_in(tmp_path / "a", resume=True)) for name in OWN),
-    ):
-        path = tmp_path / "a" / place
-        planted(path, kind)
-        refused(partial(act, path), path)
-        path.unlink()
-    planted(tmp_path / "a" / "begun-1-2", kind)
-    assert times_in(tmp_path / "a") == {}
-
-
-@pytest.mark.parametrize("folder", ["run", "run.partial", "run.replaced"])
-@pytest.mark.parametrize("place", ["", "settled", "run.h5", "run.lock", "paraview/view.py"])
-def test_a_run_refuses_links_in_its_folders_and_follows_those_above(folder, place, planted, tmp_path) -> None:
-    (tmp_path / "elsewhere" / "results").mkdir(parents=True)
-    (tmp_path / "results").symlink_to(tmp_path / "elsewhere" / "results")
-    with Folder(tmp_path / "results", "run").writing(anew=True) as folder_of_run:
-        (folder_of_run / "run.h5").write_text("a run")
-    path = tmp_path / "results" / folder / place
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.exists():
-        path.rename(path.with_name("kept"))
-    planted(path, "link")
-    refused(Folder(tmp_path / "results", "run").check, path)
-    if place in ("", "settled", "paraview"):
-        refused(lambda: make_folder(path), path)
 
 
 def test_removing_and_moving_do_not_enter_links(tmp_path) -> None:

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import tempfile
 import threading
 import time
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, look, put_off
-from dembound.machine import Memory, memory_here, private_folder
+from dembound.machine import Memory, memory_here
 
 GIB = 2.0**30
 
@@ -51,26 +50,6 @@ def test_the_group_of_a_process_or_one_around_it_limits_its_memory(root) -> None
 
     # pages of files that nobody uses are dropped when others need them: 4 − 2 + 0.5
     assert memory_here(root(**files)) == Memory(4.0 * GIB, 2.5 * GIB)
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="Windows has temporary files for each user")
-def test_a_temporary_folder_is_never_one_that_another_user_may_write(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    make = private_folder.__wrapped__
-    own = tmp_path / f"dembound-{os.getuid()}"
-    assert [make(), make()] == [own, own]
-    assert own.stat().st_mode & 0o777 == 0o700
-    own.chmod(0o770)
-    assert make() != own
-    own.rename(tmp_path / "moved")
-    (tmp_path / "moved").chmod(0o700)
-    own.symlink_to(tmp_path / "moved")
-    fresh = make()
-    assert (fresh.parent, fresh.stat().st_mode & 0o777) == (tmp_path, 0o700)
-    assert fresh != own
-    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)  # a folder of another user
-    (tmp_path / f"dembound-{os.getuid()}").mkdir(0o700)
-    assert make().name not in {own.name, f"dembound-{os.getuid()}"}
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,5 @@
 """Texts of cases with keys changed: they parse to the tables requested, and all other lines stand byte for byte."""
 
-import difflib
 import tomllib
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
@@ -80,50 +79,6 @@ def put(data: Any, place: Place, value: Any) -> None:
     for key in place[:-1]:
         data = data[key]
     data[place[-1]] = value
-
-
-def test_a_line_in_an_odd_layout() -> None:
-    """Every form of a key, changed by its dotted name: the text as someone would write it by hand."""
-    changes = {
-        "title": "even",
-        "ground.size": [300.0, 200.0],
-        "boundary.right.beta_p": 0.7,
-        "boundary.right.beta_s": 0.9,
-        "boundary.left": None,
-        "boundary.top": {"type": "free"},
-        "monitor.b.position": [3.5, 4.0],
-        "monitor.1": None,
-        "outside.cfl.of.layers": 0.4,
-        "outside.cfl.of.rest": 1,
-        "outside.load.y.force": [0.0, 1.0],
-        "run": {"duration": 2.0, "until": {"silent": True}},
-    }
-    found = difflib.ndiff(ODD.splitlines(), edited(ODD, changes).splitlines())
-    changed = [line for line in found if line[0] in "+-" and line[2:].strip()]
-    assert changed == [
-        '- title = "odd"   # shown above pictures',
-        '+ title = "even"   # shown above pictures',
-        "-          300.0 ]  # along y",
-        "+          200.0 ]  # along y",
-        "-   [boundary.left]",
-        '-   type = "free"',
-        "-   beta_p = 0.71_38",
-        "+   beta_p = 0.7",
-        "+   beta_s = 0.9",
-        "+ [boundary.top]",
-        '+ type = "free"',
-        "- [[monitor]]",
-        '- name = "a"',
-        "- position = [1.0, 2.0]",
-        "- position = [3.0, 4.0]",
-        "+ position = [3.5, 4.0]",
-        "- cfl.of.layers = 0.5",
-        "+ cfl.of.layers = 0.4",
-        "+ cfl.of.rest = 1",
-        '-     {name = "y"},                      # not',
-        '+     {name = "y", force = [0.0, 1.0]},                      # not',
-        *("+ [run]", "+ duration = 2.0", "+ [run.until]", "+ silent = true"),
-    ]
 
 
 def test_comments_above_a_key_replace_their_kind() -> None:

@@ -4,9 +4,7 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
 from dembound.plot.chart import plot_chart
-from dembound.plot.style import save
 
 
 @pytest.fixture
@@ -44,13 +42,3 @@ def test_points_are_errors_in_per_cent_at_their_cost(chart) -> None:
     (front,) = (line for line in panel.lines if line.get_label() == "Pareto front")
     np.testing.assert_allclose(front.get_xydata(), [(4.0, 1.0), (0.5, 20.0)])
     assert texts(side) == ["Pareto front, the cheapest first", "coarse: 20 %, 0.5 s", "fine: 1 %, 4 s"]
-
-
-def test_the_sentence_stays_below_any_title(chart, tmp_path) -> None:
-    path = chart([("fine", 0.01, 3.0)])
-    assert plot_chart(path).get_suptitle() == "A rod\ncheapest: none"
-    figure = plot_chart(path, "Mine $x^{$")
-    assert figure.get_suptitle() == "Mine $x^{$\ncheapest: none"
-    save(figure, path.with_suffix(".png"))  # as text, not as a formula
-    with pytest.raises(CaseError, match="cannot be read"):
-        plot_chart(tmp_path / "nothing.h5")

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.plot.histories import plot_histories, plot_hodograph, plot_section
+from dembound.plot.histories import plot_histories, plot_section
 
 
 def names(figure):
@@ -98,12 +98,3 @@ def test_a_section_has_each_history_at_its_distance(small_run):
             np.testing.assert_allclose(line.get_ydata(), expected)
             np.testing.assert_allclose(line.get_xdata(), group["time"][:] / 1e-3)
     assert panel.get_title("left") == f"{distance:.3g} m upwards is {largest / 0.9:.3g} m/s"
-
-
-def test_what_cannot_be_shown_is_said(small_run, spalled_run):
-    with pytest.raises(CaseError, match="needs two monitors that all runs have, here are 1"):
-        plot_section([small_run], monitors=["back"])
-    with pytest.raises(CaseError, match="a section shows one"):
-        plot_section([small_run], component="both")
-    with pytest.raises(CaseError, match="a hodograph is of a motion"):
-        plot_hodograph([spalled_run], "stress")

@@ -95,27 +95,6 @@ def test_a_full_disk_loses_nothing_that_was_written(case, finished, whole, tmp_p
     assert reached
 
 
-def test_a_run_that_ends_in_its_last_files_is_resumed_also_from_within(
-    case, finished, whole, tmp_path, monkeypatch
-) -> None:
-    def ended(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr(job, "write_paraview", ended)
-        with pytest.raises(KeyboardInterrupt):
-            run_case(case, tmp_path)
-    monkeypatch.chdir(tmp_path / "bar.partial")
-    again = resume_case(Path())
-
-    assert again == tmp_path / "bar"
-    assert np.array_equal(history(again / "run.h5"), whole)
-    assert (again / "paraview" / "bar.pvd").is_file()
-    with open_record(again / "run.h5") as one, open_record(finished / "run.h5") as other:
-        assert np.array_equal(one["energy/time"], other["energy/time"])
-        assert len(one["snapshots"]) == len(other["snapshots"])
-
-
 def test_files_that_no_run_has_written_are_kept(case, folder, tmp_path) -> None:
     left = shutil.copytree(folder, tmp_path / "bar.replaced")
     (folder / "notes.txt").write_text("mine")

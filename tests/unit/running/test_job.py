@@ -48,17 +48,6 @@ def _small_pictures(monkeypatch) -> None:
     drawn_quickly(monkeypatch)
 
 
-def test_a_run_leaves_one_whole_folder_and_pictures_where_they_are_requested(bar, tmp_path) -> None:
-    folder = run_case(bar({"output.pictures": True, "monitor": []}), tmp_path / "new" / "results")
-
-    assert folder == tmp_path / "new" / "results" / "bar"
-    assert list(folder.parent.iterdir()) == [folder]
-    names = {path.name for path in folder.iterdir()}
-    assert names == {"run.h5", "checkpoint.npz", "summary.json", "paraview", "scene.png"}  # no histories.png
-    with h5py.File(folder / "run.h5") as file:
-        assert file.attrs["complete"]
-
-
 def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling, tmp_path) -> None:
     pulled = {"boundary.left": GRIP, "wave.pulse.amplitude": -5.0}
     brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, **pulled}

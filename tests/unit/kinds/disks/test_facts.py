@@ -139,31 +139,6 @@ def test_facts_of_the_waves() -> None:
     assert facts["less exact monitors"] == "near the corners where layers begin: (-3, -3), (15, -3) m"
 
 
-STRAIGHT = "SV, straight up, with the velocity of wave pulse at (0, 0) m; "
-
-
-@pytest.mark.parametrize(
-    ("changes", "wave", "reflected"),
-    [
-        (
-            {"incident.angle": -20.0},
-            "20° from the vertical to the left, with the velocity of wave pulse at (12, 0)",
-            "",
-        ),
-        ({"incident.angle": 0.0}, STRAIGHT, "SV at 0° with 1 of the amplitude; critical from 45° on"),
-        (
-            {"boundary.top": {"type": "outside"}},
-            "at (0, 0) m, at 1414.2 m/s along x; reaches",
-            "none, as the ground ha",
-        ),
-    ],
-)
-def test_other_waves_are_reported(changes, wave: str, reflected: str) -> None:
-    facts = dict(incident_facts(build(small(CASE, changes=changes))))
-    assert wave in facts["incident wave"]
-    assert reflected in facts["reflected waves"]
-
-
 STAYS = {"type": "constant", "amplitude": 1.0, "rise": 0.4}
 RANDOM = {"pattern": "B", "size": [40.0, 20.0], "radius": 0.5, "radius_ratio": 1.5, "brick": [10.0, 10.0], "seed": 1}
 

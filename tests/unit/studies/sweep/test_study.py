@@ -5,12 +5,10 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 
 import pytest
-from filelock import FileLock
 
-from dembound.errors import CaseError
 from dembound.studies.sweep import study
 from dembound.studies.sweep.perform import Outcome, outcome_in
-from dembound.studies.sweep.study import LOCK, Options, sweep
+from dembound.studies.sweep.study import Options, sweep
 from dembound.studies.sweep.workers import Workers
 
 
@@ -145,18 +143,3 @@ def test_a_signal_asks_all_to_stop_and_leaves_what_is_done(rods, swept, tmp_path
     assert outcome_in(folder, members[0].key).failure == ""
     assert not list(folder.glob("begun-*"))
     assert swept(members)[1].submitted == [members[1].name]
-
-
-def test_a_folder_of_something_else_or_in_use_is_refused(rods, swept, tmp_path) -> None:
-    folder = tmp_path / "a_sweep"
-    folder.mkdir()
-    (folder / "thesis.tex").touch()
-    with pytest.raises(CaseError, match="exists and holds no sweep"):
-        swept(rods(1e6))
-    (folder / "thesis.tex").unlink()
-    with FileLock(folder / LOCK), pytest.raises(CaseError, match="holds no sweep"):
-        swept(rods(1e6))
-    (folder / LOCK).unlink(missing_ok=True)
-    swept(rods(1e6))
-    with FileLock(folder / LOCK), pytest.raises(CaseError, match="is being written by another sweep"):
-        swept(rods(1e6))

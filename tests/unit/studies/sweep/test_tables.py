@@ -9,7 +9,6 @@ import pytest
 from small_cases import GRAINS, small
 
 from dembound.errors import CaseError
-from dembound.plot.stability import plot_sweep
 from dembound.results.folder import problem_of
 from dembound.studies.sweep.members import ENERGY, LONGEST, Member, members_of, variations
 from dembound.studies.sweep.perform import Outcome
@@ -68,19 +67,6 @@ def test_tables_have_rows_of_members_and_groups_and_the_record_the_same_with_uni
         inner = file["statistics/monitors.end.peak_velocity"]
         assert inner["mean"][:].tolist() == [2.0, 5.0]
         assert inner["count"][:].tolist() == [2, 1]
-
-
-def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
-    write_tables(swept, tmp_path)
-    figure = plot_sweep(tmp_path / "sweep.h5")
-    (panel,) = (axes for axes in figure.axes if axes.axison)
-    assert panel.get_ylabel() == "monitors.end.peak_velocity (m/s)"
-    clouds = [line.get_ydata() for line in panel.lines if line.get_marker() == "o"]
-    points = np.concatenate(clouds)
-    assert sorted(points[np.isfinite(points)]) == [1.0, 3.0, 5.0]
-    (mean,) = (bars.lines[0] for bars in panel.containers)
-    assert mean.get_ydata().tolist() == [2.0]  # where there is an interval
-    assert figure.get_suptitle() == "β and $safety$"
 
 
 def test_the_interval_is_students() -> None:
