@@ -18,7 +18,6 @@ from dembound.kinds.disks.continuum_facts import continuum_facts, continuum_warn
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import incident_facts
 from dembound.kinds.disks.kind import Disks
-from dembound.running import plan, warnings_before
 from dembound.words import percent
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
@@ -53,28 +52,6 @@ def test_what_whole_cells_return_is_said_where_half_cells_are_possible(bar) -> N
     assert share == pytest.approx(100.0 * np.pi * frequency * 0.5 / 2000.0, rel=0.02)  # of two digits
     for changes in ({"boundary.right.half_mass": True}, {"boundary.right.beta_p": 0.5}, SLOW):
         assert "whole cells" not in facts_of(bar(long | changes))["right side"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "pressure"),
-    [
-        ({}, "0 Pa"),  # a lattice is packed without stress
-        ({"static": {"stress": [-3e5, -1e5, 7e5]}}, "200 kPa"),
-        ({"static": {"stress": [-3e6, -3e6, 0.0]}}, None),
-    ],
-)
-def test_with_a_memory_a_strong_wave_is_no_warning_but_where_the_law_changes(bar, changes, pressure) -> None:
-    case = bar({"material.law": "linearpbond", **SLOW, **changes})
-    facts = facts_of(case)
-
-    assert [line for line in warnings_before(plan(case)) if not line.startswith("static: the steady")] == []
-    if pressure is None:
-        assert "stress of pulse" not in facts
-    else:  # 2500·1000·0.5 Pa
-        said = (
-            f"ρcv = 1.25 MPa, above the confining stress of {pressure}; in tension contacts open, and the law changes "
-        )
-        assert facts["stress of pulse"] == f"{said}to linearpbond"
 
 
 @pytest.mark.parametrize(
