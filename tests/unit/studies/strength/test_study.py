@@ -12,7 +12,7 @@ from dembound.studies.strength.study import Search, measure, require_strengths, 
 from dembound.studies.strength.trial import FALL, MOVES, NO_REST, REST, Places, Tried
 
 CUT = {
-    "packing": {"pattern": "B", "size": [12.0, 6.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 6.0]},
+    "packing": {"pattern": "B", "size": [12.0, 6.0], "radius": 0.35, "radius_ratio": 1.5, "brick": [6.0, 6.0]},
     "material": {"density": 2000.0, "law": "linearpbond", "emod": 2e8, "pb_emod": 2e8}
     | {"fric": 0.5, "pb_ten": 5e4, "pb_coh": 5e4},
     "hole": [{"name": "cut", "type": "polygon", "points": [[6.0, 2.0], [13.0, 2.0], [13.0, 7.0], [6.0, 7.0]]}],
@@ -67,7 +67,7 @@ def test_what_cannot_fail_or_has_no_weight_is_refused() -> None:
 
 
 def test_more_than_a_hundredth_of_the_disks_half_a_diameter_from_their_elastic_places_are_a_failure() -> None:
-    scene = build(small(CUT))
+    scene = build(small(CUT, changes={"packing.radius": 0.25}))
     count, diameter = scene.disk_count, scene.ground.brick.mean_diameter
     few, still = count // 100, np.zeros((2, count))
     moved = np.zeros((3, count))
