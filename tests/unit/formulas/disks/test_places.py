@@ -3,13 +3,9 @@
 import numpy as np
 import pytest
 import tomli_w
-from scene_tables import ISOTROPIC, lattice, monitors, point, pulse
+from scene_tables import ISOTROPIC, lattice, pulse
 from small_cases import PUSHED, around, small
 
-from dembound.accuracy.judge import extended
-from dembound.accuracy.of_disks.companions import Companions
-from dembound.accuracy.of_disks.measured import errors_of_places
-from dembound.accuracy.runner import measure
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packing_waves import slowest_speed
@@ -21,9 +17,8 @@ from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, OF_WAV
 from dembound.formulas.disks.places import NINE, middle_of_loads, weights_at
 from dembound.holes import Circle, Rectangle
 from dembound.holes.rectangle import STRAIGHT
-from dembound.kinds import loads, with_changes
+from dembound.kinds import loads
 from dembound.packings import Square
-from dembound.running import Progress, plan
 
 
 def test_quadratic_motion_is_found_at_any_place() -> None:
@@ -56,35 +51,6 @@ def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
     assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
     assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
     assert middle() is None  # driven
-
-
-def test_a_load_nearer_to_a_surface_counts_even_if_monitors_have_moved_with_it() -> None:
-    """Disks of 3 m have load and monitor 1 m lower below a surface than those of 1 m that were asked for.
-
-    It is found from the change over a row of 3 m below, 2 m from that over 1 m above, so that what a wave of 88 m sends
-    back comes by the phase 2·2π·2/88 = 0.29 too early or late; the disks of 3 m add less.
-    """
-    tables = {
-        "packing": lattice(30.0, 30.0, 1.0),
-        "boundary": around("viscous"),
-        "material": ISOTROPIC,
-        "wave": {"pulse": {"type": "ricker", "amplitude": 1.0, "frequency": 8.0}},
-        "run": {"duration": 0.25},
-    }
-    low, high = (
-        small(tables | {"load": [point((1e5, 1e5), (10.5, y))], "monitor": monitors(there=(16.5, y))})
-        for y in (19.5, 20.5)
-    )
-    planned = plan(high)
-    larger = build(with_changes(high, {"packing.radius": 1.5}))
-    companions = Companions(high, planned.scene, planned.time_step, 1e9)
-    found, time = errors_of_places(companions, larger)["there"]["velocity"], companions.recorded(larger)["there"].time
-    runs = (measure(extended(case).case, Progress())[0] for case in (low, high))
-    own, other = (run.motions["there"].at(time) for run in runs)
-    true = (own.values["velocity"] - other.values["velocity"])[:, :2]
-
-    assert np.linalg.norm(true) > 0.03 * np.linalg.norm(other.values["velocity"])
-    assert np.linalg.norm(found - true) < 0.4 * np.linalg.norm(true)
 
 
 def test_errors_of_walls_are_of_first_order() -> None:
