@@ -173,11 +173,10 @@ def test_each_layer_has_its_own_k0(lab, law: str) -> None:
 @pytest.mark.parametrize(
     ("name", "material"),
     [
-        *(("column", BONDED), ("continuum", DAMPED), ("wrapped", BONDED)),
-        *(
-            pytest.param(*each, marks=pytest.mark.slow)
-            for each in (("column", DAMPED), ("continuum", BONDED), ("wrapped", DAMPED))
-        ),
+        ("continuum", DAMPED),
+        # of `BONDED` nothing else in CI compiles the kernels
+        *(pytest.param(name, BONDED, marks=pytest.mark.slow) for name in SIDES),
+        *(pytest.param(name, DAMPED, marks=pytest.mark.slow) for name in ("column", "wrapped")),
     ],
 )
 def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, monkeypatch, name: str, material) -> None:
