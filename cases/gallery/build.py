@@ -137,8 +137,8 @@ class Example:
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds, by the commands of its page. Run times are those of "
-        "one core;\nerrors are what `dembound estimate results/NAME` predicts, which names what it does not know (not of all).\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds, by the commands of its page. Run times are of "
+        "one core;\nerrors are those of `dembound estimate results/NAME`, which names what it does not know (not of all).\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")

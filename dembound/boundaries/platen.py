@@ -87,7 +87,7 @@ class Holding(Keeping):
 class Wall(Holding):
     """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
 
-    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
+    artificial: bool = quantity(True, unit="1", help="ground or rock goes on beyond the side")
 
     @property
     def is_artificial(self) -> bool:

@@ -68,7 +68,7 @@ class Dashpots(Keeping):
     half_mass: bool = quantity(
         False,
         unit="1",
-        help="whether the particles are half cells, on sides of disks in one row; not on a free_field side",
+        help="the particles are half cells; sides of disks in one row, not free_field",
     )
 
     @model_validator(mode="after")

@@ -58,9 +58,7 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(
-        None, unit="m", means="length", help="width and height of the scene, whole bricks, to six digits"
-    )
+    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
     bricks: Count | None = quantity(
         None, unit="1", means="count", help="number of bricks along x and y, instead of size"
     )
@@ -70,7 +68,7 @@ class Packing(Table, ABC):
         means="place",
         help="lower left corner of the disks; all places of a case are in these coordinates",
     )
-    radius: float = quantity(unit="m", means=SIZE, help="disk radius (mean radius of a random packing)", gt=0.0)
+    radius: float = quantity(unit="m", means=SIZE, help="radius, mean of a random packing", gt=0.0)
 
     @property
     @abstractmethod
@@ -195,9 +193,7 @@ class DensePacking(Packing):
         help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
         gt=0.0,
     )
-    bond_gap: float = quantity(
-        0.0, unit="m", means="length", help="gaps between disks up to this are contacts, too", ge=0.0
-    )
+    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts, too", ge=0.0)
 
     @property
     def brick_size(self) -> tuple[float, float]:

@@ -58,8 +58,8 @@ class FileWave(Wave):
     path: str = quantity(
         ...,
         unit="1",
-        help="text file, relative to the folder of the case, of time (s) and velocity (m/s), or the factor of a load; "
-        "columns are separated by blanks or semicolons, in a .csv file by commas",
+        help="text file, relative to the folder of the case, of time (s) and velocity (m/s) or the factor of a load; "
+        "separated by blanks or semicolons, in a .csv file by commas",
         min_length=1,
     )
     scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's values")

@@ -16,7 +16,7 @@ class BarRange(Table):
     A contact at an interface opens where it would have to pull.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
+    name: FileName = quantity(..., unit="1", help="name in messages and results")
     length: float = quantity(..., unit="m", means="length", help="length of the range", gt=0.0)
     spacing: float | None = quantity(
         None,

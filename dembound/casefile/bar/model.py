@@ -31,7 +31,7 @@ class BarLoad(Table):
     on one node it breaks them.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
+    name: FileName = quantity(..., unit="1", help="name in messages and results")
     pressure: float = quantity(
         ..., unit="Pa", means="pressure of a load", help="pressure on the section; negative values pull"
     )
