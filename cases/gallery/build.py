@@ -130,15 +130,15 @@ class Example:
             f"{moving if self.has_movie else ''}{measured.size}, {measured.seconds:.2g} s; "
             f"error: {error}{', not of all' if unknown else ''}.\n\n```sh\n{commands}\n```\n\n"
             f"```{{literalinclude}} ../../cases/gallery/{self.name}.toml\n"
-            ":language: toml\n:start-at: title =\n```\n"
+            ":language: toml\n:start-at: title\n```\n"
         )
 
 
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds, by the commands of its page. Run times are of "
-        "one core;\nerrors are those of `dembound estimate results/NAME`, which names what it does not know (not of all).\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds on one core, by the commands of its page. Errors are "
+        "those of\n`dembound estimate results/NAME`, which names what it does not know (not of all).\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
