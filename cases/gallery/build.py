@@ -137,8 +137,8 @@ class Example:
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds on one core, by the commands of its page. Errors are "
-        "those of\n`dembound estimate results/NAME`, which names what it does not know (not of all).\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds on one core, by the commands of its page. Errors "
+        "are those of\n`dembound estimate results/NAME`, which names what it does not know (not of all).\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
