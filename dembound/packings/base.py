@@ -59,9 +59,7 @@ class Packing(Table, ABC):
 
     pattern: str
     size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
-    bricks: Count | None = quantity(
-        None, unit="1", means="count", help="number of bricks along x and y, instead of size"
-    )
+    bricks: Count | None = quantity(None, means="count", help="number of bricks along x and y, instead of size")
     origin: tuple[float, float] = quantity(
         (0.0, 0.0),
         unit="m",
@@ -181,11 +179,9 @@ class DensePacking(Packing):
 
     packed_under_stress: ClassVar[bool] = True
 
-    radius_ratio: float = quantity(
-        unit="1", means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0
-    )
+    radius_ratio: float = quantity(means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0)
     brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
-    seed: int = quantity(0, unit="1", means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
+    seed: int = quantity(0, means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
     confining_stress: float | None = quantity(
         None,
         unit="Pa",
