@@ -104,14 +104,14 @@ def every_key(value: Any) -> Any:
     return [every_key(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
-def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = None, **limits: Any) -> Any:
+def quantity(default: Any = ..., *, help: str, unit: str = "1", means: str | None = None, **limits: Any) -> Any:
     """A physical field, with the unit and meaning that docs and error texts print.
 
     Parameters
     ----------
     default : the value when the key is absent; ``...`` makes the key required.
-    unit : SI unit, "1" for a pure number.
     help : one sentence with the meaning of the key.
+    unit : SI unit, "1" for a pure number.
     means : meaning of a number in `MEANINGS`, with its likely sizes; absent: the only meaning of its unit.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """

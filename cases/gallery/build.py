@@ -122,23 +122,23 @@ class Example:
 
     def page(self, measured: Measured) -> str:
         """The page of the example."""
-        commands = "\n".join((f"dembound cases copy gallery/{self.name}", *self.commands))
+        commands = "\n".join((f"dembound cases copy gallery/{self.name}", *self.commands[:-1]))
+        error, *unknown = measured.error.split("; ")
         moving = f"![The same, moving](../pictures/gallery_{self.name}.gif)\n\n"
         return (
             f"# {self.title}\n\n{self.text}\n\n![{measured.drawn}](../pictures/gallery_{self.name}.png)\n\n"
             f"{moving if self.has_movie else ''}{measured.size}, {measured.seconds:.2g} s; "
-            f"predicted error: {measured.error}.\n\n```sh\n{commands}\n```\n\n"
+            f"error: {error}{', not of all' if unknown else ''}.\n\n```sh\n{commands}\n```\n\n"
             f"```{{literalinclude}} ../../cases/gallery/{self.name}.toml\n"
-            ":language: toml\n:start-at: title =\n```\n"
+            ":language: toml\n:start-at: title\n```\n"
         )
 
 
 def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
     """The page of all examples, cards by topic, and the list of pages."""
     parts = [
-        "# Gallery\n\nEvery picture is a case that runs in seconds, by the commands of its page; from Python, "
-        '`dembound.run(dembound.load("p_pulse.toml"), "results")`.\nRun times are those of one core, compiled, '
-        "without pictures; errors are those that `dembound estimate` predicts.\n"
+        "# Gallery\n\nEvery picture is a case that runs in seconds on one core, by the commands of its page. Errors "
+        "are those of\n`dembound estimate results/NAME`, which names what it does not know (not of all).\n"
     ]
     for topic, names in TOPICS.items():
         parts.append(f"## {topic}\n\n::::{{grid}} 1 2 2 3\n:gutter: 3\n")
@@ -146,7 +146,7 @@ def index(examples: dict[str, Example], measured: dict[str, Measured]) -> str:
             picture = f"[![{name}](../pictures/gallery_{name}.png)]({name}.md)"
             parts.append(f":::{{grid-item-card}}\n{picture}\n\n[{examples[name].title}]({name}.md)\n:::\n")
         parts.append("::::\n")
-    parts.append("```{toctree}\n:hidden:\n\n" + "\n".join(examples) + "\n```\n")
+    parts.append("```{toctree}\n:hidden:\n:glob:\n\n*\n```\n")
     return "\n".join(parts)
 
 

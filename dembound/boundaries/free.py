@@ -15,7 +15,7 @@ class Free(Boundary):
 
     type: Literal["free"] = "free"
 
-    artificial: bool = quantity(False, unit="1", help="whether ground or rock goes on beyond the side")
+    artificial: bool = quantity(False, help="ground or rock goes on beyond the side")
 
     @property
     def is_artificial(self) -> bool:

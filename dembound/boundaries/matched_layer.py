@@ -22,24 +22,13 @@ class MatchedLayer(Drivable):
 
     type: Literal["matched_layer"]
     nodes: int = quantity(
-        40,
-        unit="1",
-        means="count",
-        help="number N of nodes beyond the end, at least twice the horizon",
-        ge=4,
-        le=10_000,
+        40, means="count", help="number N of nodes beyond the end, at least twice the horizon", ge=4, le=10_000
     )
     power: float = quantity(
-        3.0,
-        unit="1",
-        means="setting",
-        help="power p with which the rate of decay rises with the depth",
-        ge=1.0,
-        le=10.0,
+        3.0, means="setting", help="power p with which the rate of decay rises with the depth", ge=1.0, le=10.0
     )
     reflection: float | None = quantity(
         None,
-        unit="1",
         means="share",
         help="R0, theoretical reflection of the outer end; absent: 10^−(4 + N/20), at least 1e-12",
         gt=0.0,

@@ -25,7 +25,6 @@ class Keeping(Boundary):
 
     intact: int | None = quantity(
         None,
-        unit="1",
         means="count",
         help="disks from the side, counted by bonds, whose bonds do not break; absent: "
         f"{INTACT} where forces of the static stage act on a side that stands for ground beyond, else 0",
@@ -53,7 +52,6 @@ class Holding(Keeping):
 
     reactions: Literal["kept", "none"] = quantity(
         "kept",
-        unit="1",
         help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
     )
 
@@ -87,7 +85,7 @@ class Holding(Keeping):
 class Wall(Holding):
     """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
 
-    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
+    artificial: bool = quantity(True, help="ground or rock goes on beyond the side")
 
     @property
     def is_artificial(self) -> bool:

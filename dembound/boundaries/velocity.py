@@ -32,7 +32,7 @@ class Velocity(Holding, Driven):
     type: Literal["velocity"]
 
     hold: tuple[Component, ...] = quantity(
-        ("normal", "shear"), unit="1", help="components of motion that it prescribes; others are free", min_length=1
+        ("normal", "shear"), help="components of motion that it prescribes; others are free", min_length=1
     )
 
     @model_validator(mode="after")

@@ -25,10 +25,10 @@ class Springs(Boundary):
     beyond_dashpots: ClassVar[str] = "viscoelastic sides without their springs"
 
     alpha_n: float = quantity(
-        1.0, unit="1", means="factor of springs", help="factor α_n of the springs along the side's normal", ge=0.0
+        1.0, means="factor of springs", help="factor α_n of the springs along the side's normal", ge=0.0
     )
     alpha_s: float = quantity(
-        0.5, unit="1", means="factor of springs", help="factor α_s of the springs across the side's normal", ge=0.0
+        0.5, means="factor of springs", help="factor α_s of the springs across the side's normal", ge=0.0
     )
     young_modulus: float | None = quantity(
         None,
@@ -39,7 +39,6 @@ class Springs(Boundary):
     )
     poisson_ratio: float | None = quantity(
         None,
-        unit="1",
         means="Poisson's ratio",
         help="ν of the springs' G; absent: 0 where young_modulus is given",
         gt=-1.0,

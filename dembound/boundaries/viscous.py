@@ -50,26 +50,18 @@ class Dashpots(Keeping):
 
     beta_p: Given = quantity(
         "matched",
-        unit="1",
         means="factor of dashpots",
         help='factor β of the dashpots along the side\'s normal; "matched": that of the impedance of the packing',
     )
     beta_s: Given = quantity(
         "matched",
-        unit="1",
         means="factor of dashpots",
-        help='factor β of the dashpots across the side\'s normal; "matched": that of the impedance of the packing',
+        help="factor β of the dashpots across the side's normal",
     )
     rock: Rock | None = quantity(
-        None,
-        unit="1",
-        help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β",
+        None, help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"
     )
-    half_mass: bool = quantity(
-        False,
-        unit="1",
-        help="whether the particles are half cells, on sides of disks in one row; not on a free_field side",
-    )
+    half_mass: bool = quantity(False, help="the particles are half cells; sides of disks in one row, not free_field")
 
     @model_validator(mode="after")
     def _rock_or_factors(self) -> Self:
@@ -141,12 +133,8 @@ class Bearing(Table):
     a bottom without a column, its mean motion; L is the length of the side, G = ρc_s² of the dashpots' medium.
     """
 
-    alpha_n: float = quantity(
-        1.0, unit="1", means="factor of springs", help="factor α of the springs along the normal", ge=0.0
-    )
-    alpha_s: float = quantity(
-        0.5, unit="1", means="factor of springs", help="factor α of the springs across the normal", ge=0.0
-    )
+    alpha_n: float = quantity(1.0, means="factor of springs", help="factor α of the springs along the normal", ge=0.0)
+    alpha_s: float = quantity(0.5, means="factor of springs", help="factor α of the springs across the normal", ge=0.0)
 
 
 class BearingDashpots(Dashpots):
@@ -154,7 +142,6 @@ class BearingDashpots(Dashpots):
 
     bearing: bool | Bearing | None = quantity(
         None,
-        unit="1",
         help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
         "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
         "an intact zone",

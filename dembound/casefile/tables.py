@@ -68,24 +68,18 @@ class Run(Table):
         "auto", unit="s", help='time step; "auto" takes it from the stability limit'
     )
     safety: float = quantity(
-        0.9, unit="1", means="share", help="share of the stability limit that an automatic step uses", gt=0.0, le=1.0
+        0.9, means="share", help="share of the stability limit of an automatic step", gt=0.0, le=1.0
     )
     checkpoint: float = quantity(
-        300.0,
-        unit="s",
-        means="wall time",
-        help="wall time between two checkpoints; 0: none, and the run cannot be resumed",
-        ge=0.0,
+        300.0, unit="s", means="wall time", help="wall time between checkpoints; 0: none", ge=0.0
     )
     until: Literal["duration", "silent", "peak"] = quantity(
         "duration",
-        unit="1",
         help='when it ends: "duration"; "silent", if all monitors are so before; "peak", if '
         "the forces on all sides that a wave moves have passed their peaks",
     )
     silent_level: float = quantity(
         1e-3,
-        unit="1",
         means="share",
         help="share of its own peak so far below which a monitor's velocity is silent",
         gt=0.0,
@@ -100,7 +94,6 @@ class Run(Table):
 
     peak_share: float = quantity(
         0.7,
-        unit="1",
         means="share",
         help="share of its peak, from the force at the start, below which a side's force has fallen",
         gt=0.0,
@@ -149,39 +142,29 @@ ParaView = Literal["vtu", "vtkhdf", "both", "none"]
 class Output(Table):
     """What a run records and writes."""
 
-    history_interval: float = quantity(
-        0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0
-    )
+    history_interval: float = quantity(0.0, unit="s", help="time between samples of histories; 0: every step", ge=0.0)
     side_interval: float = quantity(
-        0.0,
-        unit="s",
-        help="time between two samples of the sides; 0: every eighth step, or history_interval if that is longer",
-        ge=0.0,
+        0.0, unit="s", help="time between samples of sides; 0: every eighth step, or a longer history_interval", ge=0.0
     )
     energy_interval: float = quantity(
-        0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
+        0.0, unit="s", help="time between entries of the ledger; 0: a hundred over the run", ge=0.0
     )
     snapshots: int = quantity(
         1,
-        unit="1",
         means="count",
-        help="number of whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest; 0: none",
+        help="whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest",
         ge=0,
         le=MOST_SNAPSHOTS,
     )
-    stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
-    contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")
+    stress: bool = quantity(False, help="stress of every particle in snapshots")
+    contacts: bool = quantity(False, help="forces of every contact and bond in snapshots")
     paraview: ParaView = quantity(
-        "vtu",
-        unit="1",
-        help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none"',
+        "vtu", help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none"'
     )
-    peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
-    load_factor: bool = quantity(
-        False, unit="1", help="whether the factor of the waves is found up to which the elastic law holds"
-    )
-    estimate: bool = quantity(False, unit="1", help="whether the errors of the run are estimated when it is over")
-    pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")
+    peaks: bool = quantity(False, help="largest speed of every particle in the run")
+    load_factor: bool = quantity(False, help="find the factor of the waves up to which the elastic law holds")
+    estimate: bool = quantity(False, help="estimate the errors when the run is over")
+    pictures: bool = quantity(True, help="draw pictures when the run is over")
 
 
 ReferenceName = Literal["exact", "extended", "finer", "finest"]
@@ -195,27 +178,21 @@ MOST_REPEATS = 1000
 class ChartChoice(Table):
     """A choice of which several keys change together."""
 
-    name: str = quantity(..., unit="1", help="name of the choice in the chart", min_length=1)
-    set: dict[str, Any] = quantity(..., unit="1", help='changed keys, such as { "run.safety" = 0.5 }')
+    name: str = quantity(..., help="name of the choice in the chart", min_length=1)
+    set: dict[str, Any] = quantity(..., help='changed keys, such as { "run.safety" = 0.5 }')
 
 
 class Chart(Table):
     """Choices that `dembound chart` compares; runs do not depend on it."""
 
-    vary: Vary = quantity(
-        {}, unit="1", help='key -> list of values, or range such as "1:20"; all combinations are choices'
-    )
-    choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table [[chart.choice]] each")
-    repeats: int = quantity(
-        3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1, le=MOST_REPEATS
-    )
+    vary: Vary = quantity({}, help='key -> list of values, or range such as "1:20"; all combinations are choices')
+    choice: tuple[ChartChoice, ...] = quantity((), help="additional choices, a table [[chart.choice]] each")
+    repeats: int = quantity(3, means="count", help="timed runs of every choice", ge=1, le=MOST_REPEATS)
     reference: ReferenceName | None = quantity(
-        None, unit="1", help="reference of the errors; absent: the first that the case allows"
+        None, help="reference of the errors; absent: the first that the case allows"
     )
     until: End = quantity(
-        "break",
-        unit="1",
-        help='end of the compared histories: "break", the first spall or broken bond of the reference; "end"',
+        "break", help='end of the compared histories: "break", the first spall or broken bond of the reference; "end"'
     )
 
 
@@ -230,21 +207,12 @@ MOST_PROCESSES = 10_000
 class Sweep(Table):
     """Members of `dembound sweep`, whose options override it; runs do not depend on it."""
 
-    vary: Vary = quantity(
-        {}, unit="1", help='key -> list of values, or range such as "1:20" or, with a step, "0:100:25"'
-    )
+    vary: Vary = quantity({}, help='key -> list of values, or range such as "1:20" or, with a step, "0:100:25"')
     together: bool = quantity(
-        False,
-        unit="1",
-        help="whether the first values of all keys are one member, the second ones the next; else all combinations",
+        False, help="the first values of all keys are one member, the second ones the next; else all combinations"
     )
-    action: Action = quantity("run", unit="1", help="action for every member")
-    method: Method = quantity("impedance", unit="1", help="how β is calibrated")
+    action: Action = quantity("run", help="action for every member")
+    method: Method = quantity("impedance", help="how β is calibrated")
     processes: int | None = quantity(
-        None,
-        unit="1",
-        means="count",
-        help="members at once; absent: as many as there are cores",
-        ge=1,
-        le=MOST_PROCESSES,
+        None, means="count", help="members at once; absent: as many as there are cores", ge=1, le=MOST_PROCESSES
     )

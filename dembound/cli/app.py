@@ -138,7 +138,7 @@ def ending_in(*endings: str) -> Callable[[typer.CallbackParam, Path | None], Pat
 
 
 png = ending_in(".png")
-PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
+PICTURE = typer.Option("--output", "-o", help="Picture (PNG).", callback=png)
 PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
 
 

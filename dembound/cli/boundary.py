@@ -66,8 +66,8 @@ def boundary(
         typer.Option(
             "--type",
             metavar="TYPE",
-            help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'; draws the "
-            "energy against frequency at 0° and 30°. May be repeated.",
+            help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'. May be "
+            "repeated.",
         ),
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),

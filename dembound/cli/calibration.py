@@ -48,7 +48,7 @@ def calibrate_sides(
         Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
     ] = None,
     every: Annotated[
-        bool, typer.Option("--all", "-a", help="Calibrate every side with dashpots, for both waves that can move it.")
+        bool, typer.Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
     ] = False,
     wave: Annotated[
         WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
@@ -59,7 +59,7 @@ def calibrate_sides(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Calibrated case to write; by default NAME_calibrated.toml beside the case.",
+            help="Calibrated case; by default NAME_calibrated.toml beside the case.",
             callback=writable,
         ),
     ] = None,

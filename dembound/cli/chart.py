@@ -40,33 +40,27 @@ def chart(
         ChartReference | None,
         typer.Option(
             metavar="REFERENCE",
-            help="Reference of the errors: exact, a solution; extended, a scene so large that nothing returns; finer, "
-            "of bars; finest, the choice with the most nodes times steps. By default the first that the case allows.",
+            help="exact, a solution; extended, a scene so large that nothing returns; finer, of bars; finest, the "
+            "choice with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
         ChartQuantity,
         typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars)."),
     ] = "velocity",
-    component: Annotated[
-        ChartComponent | None, typer.Option(help="Component compared; by default the largest in the reference.")
-    ] = None,
-    monitor: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Monitor compared; by default the one with the largest error.")
-    ] = None,
+    component: Annotated[ChartComponent | None, typer.Option(help="By default the largest in the reference.")] = None,
+    monitor: Annotated[str | None, typer.Option(metavar="NAME", help="By default that with the largest error.")] = None,
     of: Of = None,
     repeats: Annotated[
         int | None,
         typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's."),
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Run only choices that an earlier chart does not have.")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,
     name: Name = None,
-    threads: Annotated[int, typer.Option(min=1, help="Cores to use; CPU times vary least with one.")] = 1,
+    threads: Annotated[int, typer.Option(min=1, help="CPU times vary least with one.")] = 1,
 ) -> None:
     """Chart the errors of many choices of keys against their cost.
 

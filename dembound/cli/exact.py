@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 def exact(
     path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
-        str | None, typer.Option(help="lamb, cavity, garvin or scattering; absent: the one that holds for longest.")
+        str | None, typer.Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -86,9 +86,7 @@ def _several(default: Sequence[float]) -> str:
 
 @app.command("dispersion", rich_help_panel=MORE)
 def dispersion(
-    cases: Annotated[
-        list[Path] | None, typer.Argument(metavar="CASE", help="Case files (TOML) of bars, to show their lattices.")
-    ] = None,
+    cases: Annotated[list[Path] | None, typer.Argument(metavar="CASE", help="Case files of bars.")] = None,
     horizons: Annotated[
         list[int] | None,
         typer.Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
@@ -103,7 +101,7 @@ def dispersion(
     wave_speed: Annotated[
         float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
     ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and print their differences.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, too.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
     title: PictureTitle = None,
     table: CurveTable = None,
@@ -190,16 +188,14 @@ def stability(
     steps: Annotated[
         int | None,
         typer.Option(
-            help="Steps of noise at the case's own time step; by default 5,000 to 100,000, by their cost.",
+            help="Steps of noise at the case's own time step; by default 5,000 to 100,000.",
             min=1,
         ),
     ] = None,
-    full: Annotated[
-        bool, typer.Option("--full", help="Use the whole scene of disks instead of fewer copies of its brick.")
-    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
     strength: Annotated[
         bool,
-        typer.Option("--strength", help="Measure how near the ground is to failure under its weight, not the step."),
+        typer.Option("--strength", help="How near the ground is to failure under its weight, not the step."),
     ] = False,
     tolerance: Annotated[
         float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")
@@ -209,7 +205,7 @@ def stability(
         typer.Option(
             "--output",
             "-o",
-            help="Picture to write (PNG), by default stability.png; of --strength the table (CSV), strength.csv.",
+            help="Picture (PNG), by default stability.png; of --strength the table (CSV), strength.csv.",
             callback=ending_in(".png", ".csv"),
         ),
     ] = None,
@@ -314,10 +310,10 @@ def packing(
     output: Annotated[Path, PICTURE] = Path("packing.png"),
     title: PictureTitle = None,
     side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
-    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
+    brick: Annotated[bool, typer.Option("--brick", help="The first case's whole brick.")] = False,
     changes: Settings = None,
 ) -> None:
-    """Draw one side of the packing of each case, or one brick (PNG)."""
+    """Draw a side of the packing of each case, or a brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
 

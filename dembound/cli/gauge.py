@@ -43,20 +43,18 @@ class EvaluationOptions:
     ] = None
     estimate: Annotated[
         bool,
-        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
+        typer.Option("--estimate", help="Speed and attenuation from tension peaks, though results have them."),
     ] = False
     peaks: Annotated[
-        int | None, typer.Option(help="Take speed and attenuation from this number of first tension peaks.", min=2)
+        int | None, typer.Option(help="Number of first tension peaks for speed and attenuation.", min=2)
     ] = None
     pulse_end: Annotated[
-        float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
+        float | None, typer.Option(help="When the incident pulse has passed (s); by default when it returns.")
     ] = None
-    wave_speed: Annotated[
-        float | None, typer.Option(help="Wave speed (m/s) of another test; else the results', or estimated from peaks.")
-    ] = None
+    wave_speed: Annotated[float | None, typer.Option(help="Wave speed (m/s) of another test.")] = None
     attenuation: Annotated[
         float | None,
-        typer.Option(help="Attenuation (1/m) of another test; else the results', or estimated from peaks."),
+        typer.Option(help="Attenuation (1/m) of another test."),
     ] = None
 
     def of(self, gauge: Gauge, path: Path) -> Findings:
@@ -79,9 +77,7 @@ class EvaluationOptions:
 @app.command("gauge", rich_help_panel=MORE)
 @with_tables
 def gauge(
-    record: Annotated[
-        Path, typer.Argument(metavar="RECORD", help="Text file with columns of time and signal, or a run's results.")
-    ],
+    record: Annotated[Path, typer.Argument(metavar="RECORD", help="Text file of time and signal, or a run's results.")],
     monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
     position: Annotated[float | None, typer.Option(help="Position of the gauge from the loaded end (m).")] = None,
     length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
@@ -92,9 +88,7 @@ def gauge(
     evaluation: EvaluationOptions,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
-    column: Annotated[
-        str | None, of_file(metavar="NAME|NUMBER", help="Column of the signal, if there are several.")
-    ] = None,
+    column: Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Column of the signal.")] = None,
     signal: SignalOptions,
 ) -> None:
     """Evaluate a gauge on a bar: wave speed, attenuation, strength.
@@ -182,9 +176,7 @@ class BarOptions:
     specimen_length: Annotated[float, _of_bars(help="Length of the specimen (m).")]
     specimen_diameter: Annotated[float | None, _of_bars(help="Diameter of the specimen (m).")] = None
     specimen_area: Annotated[float | None, _of_bars(help="Or its area (m²).")] = None
-    bar_length: Annotated[
-        float | None, _of_bars(help="Length of each bar (m), to stop before its end reflects waves.")
-    ] = None
+    bar_length: Annotated[float | None, _of_bars(help="Length of each bar (m), whose end reflects waves.")] = None
     attenuation: Annotated[float, _of_bars(help="Of the bars (1/m).")] = 0.0
 
     def setup(self, modulus: float | None) -> Setup:
@@ -221,9 +213,7 @@ def hopkinson(
     equilibrium: Annotated[float, typer.Option(help="Largest difference of the forces over their mean.")] = 0.05,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
-    table: Annotated[
-        Path | None, typer.Option(help="Table of the histories to write (CSV).", callback=writable)
-    ] = None,
+    table: Annotated[Path | None, typer.Option(help="Table of the histories (CSV).", callback=writable)] = None,
     signal: SignalOptions,
 ) -> None:
     """Evaluate a split Hopkinson test: stress, strain, strain rate.

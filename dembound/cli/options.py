@@ -98,22 +98,18 @@ Component = Literal["x", "y", "both", "rotation"]
 """Components of the monitors' motion."""
 
 
-CurveTable = Annotated[
-    Path | None, typer.Option("--table", help="Table of the curves to write (CSV).", callback=writable)
-]
+CurveTable = Annotated[Path | None, typer.Option("--table", help="Table of the curves (CSV).", callback=writable)]
 QuantityOfMonitors = Annotated[
     Quantity | None,
     typer.Option(
         "--quantity",
         metavar="QUANTITY",
-        help=f"Quantity of the monitors: {names_of(Quantity)}; by default velocity; stress of bars alone.",
+        help=f"Quantity: {names_of(Quantity)}; by default velocity; stress of bars alone.",
     ),
 ]
 ComponentOfMotion = Annotated[
     Component | None,
-    typer.Option(
-        "--component", help="Component of the motion, by default x or y, whichever is larger; both: side by side."
-    ),
+    typer.Option("--component", help="Component of the motion; by default x or y, whichever is larger."),
 ]
 Monitors = Annotated[
     list[str] | None, typer.Option("--monitor", metavar="NAME", help="Show this monitor only. May be repeated.")
@@ -146,29 +142,26 @@ class Plotted:
     boundary: Annotated[
         Side | None,
         typer.Option(
-            help="Show this side's diameters and peak velocities instead, "
-            "with --quantity stress or displacement its mean."
+            help="This side's diameters and peak velocities, with --quantity stress or displacement its mean."
         ),
     ] = None
-    energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False
+    energy: Annotated[bool, typer.Option("--energy", help="The energy ledger of one run.")] = False
     field: Annotated[
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help=f"Show the scene of one run instead, coloured by this: {names_of(SceneField)}; forces: contacts as "
-            "lines; of a bar over place and time.",
+            help=f"The scene of one run, coloured by {names_of(SceneField)}; of a bar over place and time.",
         ),
     ] = None
     snapshot: Annotated[
         int | None,
         typer.Option(
-            help="With --field: number of the snapshot, −1 the last; by default that of the largest values, "
-            "of a bar all."
+            help="Number of the snapshot of --field, −1 the last; by default that of the largest values, of a bar all."
         ),
     ] = None
     table: Annotated[
         Path | None,
-        typer.Option(help="Table of the lines drawn to write as well (CSV), in their units.", callback=writable),
+        typer.Option(help="Table of the lines drawn (CSV).", callback=writable),
     ] = None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:

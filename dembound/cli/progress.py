@@ -10,13 +10,11 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
-from rich.text import Text
 
 from dembound.accuracy.proposal import Proposal, Watch
 from dembound.accuracy.table import WIDTH, in_one_line, lines_of
-from dembound.cli.compiling import COMPILATION
 from dembound.cli.console import INTERVAL, ending_with, err, print_lines
 from dembound.formulas.cause import Cause
 from dembound.formulas.history import Motions
@@ -50,14 +48,9 @@ def progress_of(name: str) -> Iterator[Shown]:
         BarColumn(),
         TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}", markup=False),
         TimeRemainingColumn(),
-        _Compiling(),
     )
-    COMPILATION.beside_bar = True
-    try:
-        with RichProgress(*columns, console=err, transient=True, speed_estimate_period=PACE) as bar:
-            yield ProgressBar(bar, name)
-    finally:
-        COMPILATION.beside_bar = False
+    with RichProgress(*columns, console=err, transient=True, speed_estimate_period=PACE) as bar:
+        yield ProgressBar(bar, name)
 
 
 class Watching(Watch):
@@ -107,14 +100,6 @@ def watched(name: str, made: Callable[[str, Shown], Watching] = Watching) -> Ite
         watching = made(name, shown)
         with ending_with(lambda: f"{name}: stopped; missing: {watching.missing}"):
             yield watching
-
-
-class _Compiling(ProgressColumn):
-    """The note on compiling in a bar of progress."""
-
-    def render(self, task: Task) -> Text:
-        """The note of the process."""
-        return COMPILATION.__rich__()
 
 
 def print_warning(name: str, message: str) -> None:

@@ -62,7 +62,7 @@ def _kind(file: Path) -> str:
 def cache(
     delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
 ) -> None:
-    """Show where packed bricks are kept, or delete them.
+    """Show the folder of packed bricks, or empty it.
 
     The environment variable DEMBOUND_CACHE sets another folder.
     """
@@ -81,11 +81,11 @@ def compare_histories(
         Quantity,
         typer.Option(
             metavar="QUANTITY",
-            help=f"Quantity of the monitors: {names_of(Quantity)}; the stress of bars alone.",
+            help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.",
         ),
     ] = "velocity",
     as_recorded: Annotated[
-        bool, typer.Option("--as-recorded", help="Do not correct for waves that enter disks later or earlier.")
+        bool, typer.Option("--as-recorded", help="No correction for waves that enter disks later or earlier.")
     ] = False,
 ) -> None:
     """Print the errors of histories against those of a reference run.

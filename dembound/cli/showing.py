@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def report(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=ending_in(".html", ".htm"))
+        Path, typer.Option("--output", "-o", help="Page (HTML).", callback=ending_in(".html", ".htm"))
     ] = Path("report.html"),
 ) -> None:
     """Write an HTML page of runs: scenes, histories, spectra, energy.
@@ -51,13 +51,13 @@ def movie(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     output: Annotated[
         Path,
-        typer.Option("--output", "-o", help="GIF to write, or a new folder for frames as PNG files.", callback=_movie),
+        typer.Option("--output", "-o", help="GIF, or a new folder of PNG files.", callback=_movie),
     ] = Path("movie.gif"),
     field: Annotated[
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help="Field that colours the disks, or is drawn along a bar; velocity, of a bar stress and damage.",
+            help="Field shown: velocity, of a bar also stress and damage.",
         ),
     ] = None,
     exaggerate: Annotated[float, typer.Option(help="Factor of the displacements shown; 0: undeformed.")] = 0.0,
@@ -65,7 +65,7 @@ def movie(
         list[str] | None,
         typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
     ] = None,
-    histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
+    histories: Annotated[bool, typer.Option(help="Histories below the scene.")] = True,
     fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, callback=at_most(1000))] = 10.0,
     size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
     every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
@@ -122,7 +122,7 @@ class SignalsShown:
     component: ComponentOfMotion = None
     monitor: Monitors = None
     reference: Annotated[
-        str | None, typer.Option(metavar="NAME", help="With --show transfer or surface: monitor that is the input.")
+        str | None, typer.Option(metavar="NAME", help="Monitor that is the input, of transfer or surface.")
     ] = None
 
     def problems(self, show: Shown, count: int) -> Iterator[str]:
@@ -180,9 +180,9 @@ def signals(
         Shown,
         typer.Option(
             metavar="WHAT",
-            help="fourier: amplitude spectra; transfer: their ratios to --reference or to free-field twins; response: "
-            "spectra with 5 % damping; section: histories at their distances; hodograph: motion in the plane; surface: "
-            "peaks, spectra and end of the motion along the surface over the free field's.",
+            help="fourier: spectra; transfer: their ratios to --reference or to free-field twins; response: spectra "
+            "with 5 % damping; section: histories at their distances; hodograph; surface: peaks, spectra and end of "
+            "the motion along the surface over the free field's.",
         ),
     ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),

@@ -31,27 +31,25 @@ class SignalOptions:
     unit: Annotated[
         str | None, of_file(help="Pa, kPa, MPa, GPa, V, mV, µV (uV), strain or µε (ue); by default the header's.")
     ] = None
-    scale: Annotated[float, of_file(help="Factor that makes values Pa, positive in tension; -1 changes the sign.")] = (
-        1.0
-    )
+    scale: Annotated[float, of_file(help="Factor to Pa, positive in tension; -1 changes the sign.")] = 1.0
     clipped: Annotated[bool, of_file("--clipped", help="Accept a signal that looks clipped.")] = False
-    gauge_factor: Annotated[float | None, _of_bridge(help="Gauge factor k, which converts voltages to strains.")] = None
+    gauge_factor: Annotated[float | None, _of_bridge(help="Gauge factor k.")] = None
     bridge: Annotated[
         str, _of_bridge("--bridge", help="quarter, half (two opposite gauges along the bar) or full (and two across).")
     ] = "quarter"
-    excitation: Annotated[float | None, _of_bridge(help="Voltage that supplies the bridge (V).")] = None
+    excitation: Annotated[float | None, _of_bridge(help="Voltage of the bridge (V).")] = None
     gain: Annotated[float, _of_bridge(help="Gain of its amplifier.")] = 1.0
     poisson: Annotated[float | None, _of_bridge(help="Poisson's ratio of the bar, for a full bridge.")] = None
     youngs_modulus: Annotated[
         float | None, _of_bridge("--youngs-modulus", help="E of the bar (Pa); by default ρc².")
     ] = None
-    no_baseline: Annotated[bool, _cleaning("--no-baseline", help="Remove no baseline at all.")] = False
+    no_baseline: Annotated[bool, _cleaning("--no-baseline", help="Remove no baseline.")] = False
     no_drift: Annotated[bool, _cleaning("--no-drift", help="Remove no drift.")] = False
     low_pass: Annotated[float | None, _cleaning(help="Keep what is below (Hz).")] = None
     high_pass: Annotated[float | None, _cleaning(help="Keep what is above (Hz).")] = None
     band: Annotated[
         tuple[float, float] | None,
-        _cleaning(metavar="LOW HIGH", help="Low and high pass in one: the band that remains (Hz)."),
+        _cleaning(metavar="LOW HIGH", help="The band that remains (Hz)."),
     ] = None
     notch: Annotated[list[float] | None, _cleaning(help="Remove this frequency (Hz). May be repeated.")] = None
 

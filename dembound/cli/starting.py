@@ -35,7 +35,7 @@ def new(
             autocompletion=lambda: names(),
         ),
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="List the starting points and stop.")] = False,
+    listed: Annotated[bool, typer.Option("--list", help="List the starting points.")] = False,
     schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
     """Write a commented case file to start from."""
@@ -103,9 +103,7 @@ def _schema() -> str:
 
 @app.command("schema", rich_help_panel=MORE)
 def schema(
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="File to write (JSON).", callback=writable)
-    ] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="File (JSON).", callback=writable)] = None,
 ) -> None:
     """Print the JSON schema of case files, for editors."""
     if output is None:

@@ -60,19 +60,19 @@ class ProcessingOptions:
         Baseline | None,
         _step(
             metavar="KIND",
-            help="mean: remove that before the motion, else of all; linear: a fitted line; zero-velocity: the mean, "
-            "and then the velocity left at the end; none. By default mean.",
+            help="mean, before the motion; linear, a fitted line; zero-velocity: the mean, then the velocity left at "
+            "the end; none. By default mean.",
         ),
     ] = None
     taper: Annotated[
-        float | None, _step(help="Cosine tapers at both ends (s); by default 2, in short records less.")
+        float | None, _step(help="Cosine tapers at both ends (s); by default 2, at most 5 % of the record.")
     ] = None
     high_pass: Annotated[
         float | None, _step(help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.")
     ] = None
     low_pass: Annotated[float | None, _step(help="Keep what is below (Hz); by default all.")] = None
     order: Annotated[int, _step(help="Order of the Butterworth filters, in each direction.", min=1)] = 4
-    pga: Annotated[float | None, _step(help="Scale each component to this peak of its acceleration (m/s²).")] = None
+    pga: Annotated[float | None, _step(help="Peak acceleration (m/s²) of each component.")] = None
     scale: Annotated[float, _step(help="Multiply by this factor.")] = 1.0
 
     def of(self, channel: Channel) -> Processing:
@@ -125,30 +125,29 @@ class GroundOptions:
     deconvolve: Annotated[
         Path | None,
         typer.Option(
-            metavar="CASE", help="Take the record as the surface of this case: write the incident wave below."
+            metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."
         ),
     ] = None
     kinds: Annotated[
         list[Kind] | None,
         typer.Option(
             "--as",
-            help="Kind of wave that a component becomes by --deconvolve, once for each in their order; by default the "
-            "case's only one.",
+            help="Kind of wave of each component in --deconvolve; by default the case's only one.",
         ),
     ] = None
     damping: Annotated[
         Damping,
         typer.Option(
             metavar="DAMPING",
-            help="Q of the case in --deconvolve: as_run, by the mechanisms of runs; hysteretic, G(1 + i/Q), as in "
-            "equivalent-linear programs; or constant_q, causal.",
+            help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q), as in equivalent-linear programs; or constant_q, "
+            "causal.",
         ),
     ] = "as_run"
     transfer: Annotated[
         Path | None,
         typer.Option(
             metavar="NAME.png",
-            help="Picture of the transfer functions of the ground in --deconvolve to write (PNG and CSV).",
+            help="Transfer functions of the ground in --deconvolve (PNG and CSV).",
             callback=png,
         ),
     ] = None
@@ -203,17 +202,17 @@ def wave(
             "--output",
             "-o",
             metavar="NAME.csv",
-            help="Wave to write, of several components with their names appended; by default FILE_velocity.csv, here.",
+            help="Wave, of several components with their names appended; by default FILE_velocity.csv.",
             callback=_csv,
         ),
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option(help="Picture to write (PNG); by default that of the wave.", callback=png)
+        Path | None, typer.Option(help="Picture (PNG); by default that of the wave.", callback=png)
     ] = None,
     *,
     ground: GroundOptions,
     table: Annotated[
-        Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture to write (CSV).", callback=_csv)
+        Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture (CSV).", callback=_csv)
     ] = None,
     reading: ReadingOptions,
     processing: ProcessingOptions,

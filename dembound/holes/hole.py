@@ -30,16 +30,13 @@ class Hole(Table, ABC):
     """
 
     type: str
-    name: FileName = quantity(..., unit="1", help="name of the hole in loads and messages")
+    name: FileName = quantity(..., help="name in loads and messages")
     stage: Literal["before", "after"] = quantity(
         "before",
-        unit="1",
         help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes on',
     )
 
-    keep: Literal["outside", "inside"] = quantity(
-        "outside", unit="1", help='which particles remain; "inside": the body is a sample of this shape'
-    )
+    keep: Literal["outside", "inside"] = quantity("outside", help="which particles remain")
 
     @property
     def is_shape(self) -> bool:

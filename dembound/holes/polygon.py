@@ -17,7 +17,7 @@ class Polygon(Hole):
 
     type: Literal["polygon"]
     points: Points = quantity(
-        ..., unit="m", means="place", help="corners [[x, y], …] in order, three or more, the last joined to the first"
+        ..., unit="m", means="place", help="corners [[x, y], …] in order, the last joined to the first"
     )
 
     @field_validator("points")

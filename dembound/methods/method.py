@@ -57,7 +57,7 @@ class Peridynamic(Method):
     """A method with bonds of several lengths, in the whole bar or in parts of it, from the beginning or later."""
 
     horizon: int = quantity(
-        ..., unit="1", means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
+        ..., means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
     )
 
     @property
@@ -70,5 +70,5 @@ class Triggered(Peridynamic):
     """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
 
     trigger: float = quantity(
-        0.9, unit="1", means="share", help="share of the critical stretch at which peridynamics begins", gt=0.0, le=1.0
+        0.9, means="share", help="share of the critical stretch at which peridynamics begins", gt=0.0, le=1.0
     )

@@ -20,12 +20,7 @@ class Patch(Triggered):
 
     type: Literal["patch"]
     reach: int = quantity(
-        4,
-        unit="1",
-        means="count",
-        help="horizons that a zone extends beyond what made it, on either side",
-        ge=1,
-        le=WIDEST,
+        4, means="count", help="horizons that a zone extends beyond what made it, on either side", ge=1, le=WIDEST
     )
 
     @property

@@ -18,9 +18,9 @@ class Switch(Triggered):
 
     type: Literal["switch"]
     before: Literal["finite_difference", "peridynamics"] = quantity(
-        "finite_difference", unit="1", help='method before; "peridynamics" is that with m = 1'
+        "finite_difference", help='method before; "peridynamics" is that with m = 1'
     )
-    corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
+    corrected_ends: bool = quantity(False, help="whether local springs repair the bar's soft ends")
 
     @property
     def name(self) -> str:

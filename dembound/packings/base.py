@@ -58,19 +58,15 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(
-        None, unit="m", means="length", help="width and height of the scene, whole bricks, to six digits"
-    )
-    bricks: Count | None = quantity(
-        None, unit="1", means="count", help="number of bricks along x and y, instead of size"
-    )
+    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
+    bricks: Count | None = quantity(None, means="count", help="number of bricks along x and y, instead of size")
     origin: tuple[float, float] = quantity(
         (0.0, 0.0),
         unit="m",
         means="place",
         help="lower left corner of the disks; all places of a case are in these coordinates",
     )
-    radius: float = quantity(unit="m", means=SIZE, help="disk radius (mean radius of a random packing)", gt=0.0)
+    radius: float = quantity(unit="m", means=SIZE, help="radius, mean of a random packing", gt=0.0)
 
     @property
     @abstractmethod
@@ -183,11 +179,9 @@ class DensePacking(Packing):
 
     packed_under_stress: ClassVar[bool] = True
 
-    radius_ratio: float = quantity(
-        unit="1", means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0
-    )
+    radius_ratio: float = quantity(means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0)
     brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
-    seed: int = quantity(0, unit="1", means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
+    seed: int = quantity(0, means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
     confining_stress: float | None = quantity(
         None,
         unit="Pa",
@@ -195,9 +189,7 @@ class DensePacking(Packing):
         help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
         gt=0.0,
     )
-    bond_gap: float = quantity(
-        0.0, unit="m", means="length", help="gaps between disks up to this are contacts, too", ge=0.0
-    )
+    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts, too", ge=0.0)
 
     @property
     def brick_size(self) -> tuple[float, float]:

@@ -20,7 +20,7 @@ class EdgedBrick(DensePacking):
     edge_radius: float = quantity(
         unit="m",
         means="size of a particle",
-        help="radius of the row disks, adjusted so that whole disks fill a brick side",
+        help="radius of the row disks, adjusted to whole disks",
         gt=0.0,
     )
 

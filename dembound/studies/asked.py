@@ -30,14 +30,14 @@ class Calibrating:
     method: Annotated[
         Method,
         Asked(
-            "impedance: solve for β, check it, and keep the matched β where the side returns less with it; "
-            "ratio: multiply by M_out/M_in, as published; homogenised: the matched β, no run.",
+            "impedance: solve for β, and keep the matched β where less returns with it; ratio: multiply by "
+            "M_out/M_in; homogenised: the matched β, no run.",
             metavar="METHOD",
         ),
     ] = "impedance"
     start: Annotated[float | None, Asked("First β; by default the case's own.")] = None
     tolerance: Annotated[float, Asked("Largest |M_out/M_in − 1| to accept.", least=1e-9)] = 1e-3
-    full: Annotated[bool, Asked("Use the whole scene instead of a short strip.")] = False
+    full: Annotated[bool, Asked("The whole scene instead of a short strip.")] = False
 
 
 AS_USUAL = Calibrating()

@@ -21,8 +21,8 @@ class SineBurst(Shape):
 
     type: Literal["sine_burst"]
     frequency: float = quantity(..., unit="Hz", help="frequency of the sine", gt=0.0)
-    cycles: int = quantity(..., unit="1", means="count", help="number of cycles, a whole number", ge=1, le=MOST_CYCLES)
-    taper: bool = quantity(True, unit="1", help="whether a Hann window fades the burst in and out")
+    cycles: int = quantity(..., means="count", help="number of cycles", ge=1, le=MOST_CYCLES)
+    taper: bool = quantity(True, help="a Hann window fades the burst in and out")
 
     def _harmonics(self) -> tuple[tuple[int, float], ...]:
         """The burst as plain sines (cycles k in the burst's length, factor): Σ factor · sin(2πk·t/length)."""

@@ -104,7 +104,6 @@ class Wave(Table, ABC):
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
     motion: Literal["incident", "outcrop", "within"] | None = quantity(
         None,
-        unit="1",
         help='what moves so: the "incident" wave; a free "outcrop" of the rock, twice as '
         'fast; the ground at the side, "within"; absent: incident, at sides of prescribed velocity within',
     )

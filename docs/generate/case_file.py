@@ -134,18 +134,16 @@ BARS = (
 
 RULES = """# The case file
 
-All tables and keys of a case, a TOML file. `dembound new FILE` writes a commented one, `dembound check FILE` prints
-facts, warnings and all mistakes without running it.
+All tables and keys of a case, a TOML file. `dembound check FILE` prints facts, warnings and all mistakes.
 
 - **Units** are SI, angles degrees. Two dimensions mean a thickness of 1 m: forces are per metre.
 - **Signs**: velocities are positive along +x and +y on every side; tension is positive, a pressure pushes.
 - **Names** of loads, holes, walls and monitors consist of A–Z, a–z, 0–9, `_`, `-` and `.` (not first).
 - **Sizes**: numbers are 0 or between 1e-30 and 1e30; a scene has at most 5e8 disks, a random brick 1e6, a bar 2e6
   spacings, a case 1,000 monitors.
-- **Keys**: `seed` = 0 has a default, (m) is a positive number in metres. What is not required may be left out; unknown
-  keys and tables are refused.
-- `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes, walls and monitors go by their
-  names or numbers. `dembound schema` writes this page for editors.
+- **Keys**: `seed` = 0 has a default, (m) is a positive number in metres; unknown keys and tables are refused.
+- `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes, walls and monitors go by names or
+  numbers.
 - Z is Zhou et al. (2018), L is Lu & Wang (2016).
 
 At the top level a case may have a `title`, one line for pictures and reports.
@@ -175,7 +173,7 @@ def case_file() -> str:
 def _part(part: Part) -> str:
     """A part: the sentence, the keys of several types, and the first sentence of each; or the keys of the one table."""
     given = {table: _rows(table) for table in part.tables}
-    guide = f"Guide: [{part.guide.split('/')[-1].replace('_', ' ')}](../{part.guide}.md)." if part.guide else ""
+    guide = f"[{part.guide.split('/')[-1].replace('_', ' ').capitalize()}](../{part.guide}.md)" if part.guide else ""
     texts: list[str] = [f"## {part.heading}", _sentence(part.base or part.tables[0]), part.more, guide]
     if part.base is None:
         rows = given[part.tables[0]]

@@ -16,7 +16,7 @@ class BarRange(Table):
     A contact at an interface opens where it would have to pull.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
+    name: FileName = quantity(..., help="name in messages and results")
     length: float = quantity(..., unit="m", means="length", help="length of the range", gt=0.0)
     spacing: float | None = quantity(
         None,
@@ -36,7 +36,7 @@ class BarRange(Table):
     )
     strength: float | None = quantity(None, unit="Pa", means="strength", help="tensile strength σ_t", gt=0.0)
     critical_stretch: float | None = quantity(
-        None, unit="1", means="strain", help="stretch s₀ at which a bond breaks, instead of strength", gt=0.0
+        None, means="strain", help="stretch s₀ at which a bond breaks, instead of strength", gt=0.0
     )
     fracture_energy: float | None = quantity(None, unit="J/m²", help="fracture energy G_f of its cracks", gt=0.0)
     strength_per_decade: float | None = quantity(
@@ -53,7 +53,7 @@ class BarRange(Table):
         help="velocity of the whole range at the start, positive to the right, as of a striker",
     )
     interface: Literal["bonded", "contact"] = quantity(
-        "bonded", unit="1", help="interface with the range on its left; a contact bears no tension"
+        "bonded", help="interface with the range on its left; a contact bears no tension"
     )
     gap: float = quantity(0.0, unit="m", means="gap", help="opening of the contact on its left at the start", ge=0.0)
 
@@ -125,7 +125,7 @@ class Bar(Table):
         None, unit="Pa", means="strength", help="tensile strength σ_t; absent: unbreakable", gt=0.0
     )
     critical_stretch: float | None = quantity(
-        None, unit="1", means="strain", help="stretch s₀ = σ_t/E at which a bond breaks, instead of strength", gt=0.0
+        None, means="strain", help="stretch s₀ = σ_t/E at which a bond breaks, instead of strength", gt=0.0
     )
     fracture_energy: float | None = quantity(
         None, unit="J/m²", help="fracture energy G_f of cracks; absent: bonds break at once", gt=0.0
@@ -143,7 +143,7 @@ class Bar(Table):
     attenuation: float = quantity(
         0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0
     )
-    range: tuple[BarRange, ...] = quantity((), unit="1", help="parts of a bar of several materials, from left to right")
+    range: tuple[BarRange, ...] = quantity((), help="parts of a bar of several materials, from left to right")
 
     @model_validator(mode="after")
     def _consistent(self) -> "Bar":

@@ -31,26 +31,21 @@ class BarLoad(Table):
     on one node it breaks them.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
+    name: FileName = quantity(..., help="name in messages and results")
     pressure: float = quantity(
         ..., unit="Pa", means="pressure of a load", help="pressure on the section; negative values pull"
     )
-    side: Literal["left", "right"] = quantity("left", unit="1", help="end of the bar it acts on")
+    side: Literal["left", "right"] = quantity("left", help="end of the bar it acts on")
     nodes: int = quantity(
-        1,
-        unit="1",
-        means="count",
-        help="number of nodes it is spread over, from the end inwards",
-        ge=1,
-        le=MOST_CELLS + 1,
+        1, means="count", help="number of nodes it is spread over, from the end inwards", ge=1, le=MOST_CELLS + 1
     )
-    wave: str = quantity(..., unit="1", help="name of the wave that is the time factor")
+    wave: str = quantity(..., help="name of the wave that is the time factor")
 
 
 class BarMonitor(Table):
     """A gauge: records motion and stress of the nearest node, half-way between two nodes of the left one."""
 
-    name: FileName = quantity(..., unit="1", help="name of the history in the results")
+    name: FileName = quantity(..., help="name of the history in the results")
     position: float = quantity(..., unit="m", means="place", help="where, from the bar's left end", ge=0.0)
 
 
@@ -58,7 +53,7 @@ class BarRun(Run):
     """The simulated time and the time step of a bar; the step may be given by the Courant number."""
 
     courant: float | None = quantity(
-        None, unit="1", means="Courant number", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0
+        None, means="Courant number", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0
     )
 
     @model_validator(mode="after")
