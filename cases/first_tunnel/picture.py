@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from dembound.plot.disks import Window
-from dembound.plot.field import read_disks, read_field
+from dembound.plot.field import read_disks
+from dembound.plot.field_reader import read_field
 from dembound.plot.scene import draw_panel
 from dembound.plot.style import new_figure, styled
 from dembound.results.reader import open_record

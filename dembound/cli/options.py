@@ -116,6 +116,14 @@ Monitors = Annotated[
 ]
 
 
+Exaggerated = Annotated[
+    float | None,
+    typer.Option(
+        "--exaggerate",
+        help="Factor of the displacements shown; 0: undeformed. By default 1 once disks have moved by a tenth of a "
+        "diameter.",
+    ),
+]
 SceneField = Literal[
     "velocity",
     "displacement",
@@ -159,6 +167,7 @@ class Plotted:
             help="Number of the snapshot of --field, −1 the last; by default that of the largest values, of a bar all."
         ),
     ] = None
+    exaggerate: Exaggerated = None
     table: Annotated[
         Path | None,
         typer.Option(help="Table of the lines drawn (CSV).", callback=writable),
@@ -179,6 +188,8 @@ class Plotted:
         yield from (f"{option}: shows one run, name one" for option in asked if option in SINGLE and count > 1)
         if self.snapshot is not None and self.field is None:
             yield "--snapshot: goes with --field"
+        if self.exaggerate is not None and self.field is None:
+            yield "--exaggerate: goes with --field"
         if self.table is not None and self.field is not None:
             yield "--table: is of lines, a field has none; run.h5 and the files for ParaView have its values"
 
@@ -191,7 +202,7 @@ class Plotted:
         if self.field is not None:
             from dembound.kinds import kind_of_record
 
-            return kind_of_record(files[0]).field_picture(files[0], self.field, self.snapshot)
+            return kind_of_record(files[0]).field_picture(files[0], self.field, self.snapshot, self.exaggerate)
         if self.energy:
             from dembound.plot.energy import plot_energy
 

@@ -13,7 +13,15 @@ import typer
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, ending_in, writable
 from dembound.cli.console import INTERVAL, err, out
-from dembound.cli.options import ComponentOfMotion, Monitors, QuantityOfMonitors, SceneField, leave, with_tables
+from dembound.cli.options import (
+    ComponentOfMotion,
+    Exaggerated,
+    Monitors,
+    QuantityOfMonitors,
+    SceneField,
+    leave,
+    with_tables,
+)
 from dembound.cli.results import results_file
 from dembound.errors import CaseError
 
@@ -60,7 +68,7 @@ def movie(
             help="Field shown: velocity, of a bar also stress and damage.",
         ),
     ] = None,
-    exaggerate: Annotated[float, typer.Option(help="Factor of the displacements shown; 0: undeformed.")] = 0.0,
+    exaggerate: Exaggerated = None,
     monitor: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),

@@ -303,14 +303,18 @@ class Kind(ABC, Generic[C, S]):
         """The pictures of a run by name, besides the picture of its monitors' velocities."""
 
     @abstractmethod
-    def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
-        """A field of a record as a picture, of one snapshot or of suitable ones; raises CaseError if it is missing."""
+    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+        """A field of a record as a picture, of one snapshot or of suitable ones.
+
+        exaggerate : as of `moving_picture`. Raises CaseError if the field is missing.
+        """
 
     @abstractmethod
-    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float | None) -> MovingPicture:
         """A field of a record at every snapshot, by default the field of a run's pictures.
 
-        exaggerate : factor of the displacements of nodes. Raises CaseError without snapshots or the field.
+        exaggerate : factor of the displacements of nodes; None for what suits. Raises CaseError without snapshots or
+        the field.
         """
 
 

@@ -46,6 +46,17 @@ class Window:
         low = (positions - radii[:, None]).min(axis=0)
         return cls(low, (positions + radii[:, None]).max(axis=0) - low)
 
+    @classmethod
+    def of_boxes(cls, boxes: np.ndarray) -> "Window":
+        """The smallest window with rectangles (k, 4) m of left, bottom, right and top."""
+        low = boxes[:, :2].min(axis=0)
+        return cls(low, boxes[:, 2:].max(axis=0) - low)
+
+    def within(self, other: "Window") -> "Window":
+        """The part of this window that lies in another, which it meets."""
+        low = np.maximum(self.corner, other.corner)
+        return Window(low, np.minimum(self.corner + self.size, other.corner + other.size) - low)
+
     def with_other(self, other: "Window") -> "Window":
         """The smallest window with this one and another."""
         low = np.minimum(self.corner, other.corner)
@@ -254,8 +265,7 @@ class ContinuumCells:
     @property
     def window(self) -> Window:
         """The smallest window with all elements."""
-        low = self.elements[:, :2].min(axis=0)
-        return Window(low, self.elements[:, 2:].max(axis=0) - low)
+        return Window.of_boxes(self.elements)
 
     def moved(self, displacements: np.ndarray | None) -> Self:
         """The mesh with its cells moved by displacements (m, 2) m of the nodes; None: not moved."""

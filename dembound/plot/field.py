@@ -1,26 +1,20 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, get_args
+from typing import Literal
 
 import h5py
 import numpy as np
 
-from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
+from dembound.plot.disks import ContinuumCells, Window, read_continuum, read_holes
 from dembound.plot.lines_of_ground import LayersOfSide, faults_in, foot_in, layers_in
-from dembound.results.histories import FREE_FIELD, UNITS
+from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import (
-    COMPONENTS,
-    cracks_until,
     laws_in_words,
     laws_of,
     require_run,
-    snapshot_of,
-    snapshots_of,
     text_of,
     walls_at,
 )
@@ -33,17 +27,11 @@ OF_THE_RUN = ("peak", "layer")
 FORCES = "forces"
 """Name of the picture of contacts, see plot/packing.py."""
 
+SHOWN_LAYER = 0.06
+"""Part of the size of the scene as far as which layers that absorb are shown."""
+
 SEEN = 0.3
 """Part of the size of all disks as far as which walls beyond them are shown."""
-
-MEGA = 1e6
-"""Pascals in a megapascal."""
-
-STRESSES = ("stress_xx", "stress_yy", "stress_xy")
-"""Names of stresses in the order of the columns in a record."""
-
-SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", positive up on a face to the right"}
-"""The meaning of a positive stress."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +73,7 @@ class Disks:
 
     @cached_property
     def window(self) -> Window:
-        """The whole scene, with its continuum, and walls as far as `SEEN` of the disks' size beyond them."""
+        """The whole scene: a continuum, as far as `SHOWN_LAYER` into what absorbs, and walls as far as `SEEN`."""
         own = self.own_window
         for line in self.walls:
             margin = SEEN * float(max(self.own_window.size))
@@ -93,7 +81,12 @@ class Disks:
                 line, self.own_window.corner - margin, self.own_window.corner + self.own_window.size + margin
             )
             own = own.with_other(Window(near.min(axis=0), np.ptp(near, axis=0)))
-        return own if self.continuum is None else own.with_other(self.continuum.window)
+        if self.continuum is None:
+            return own
+        ground = self.continuum.elements[~self.continuum.absorbs]
+        inner = own.with_other(Window.of_boxes(ground)) if len(ground) else own
+        margin = SHOWN_LAYER * float(max(inner.size))
+        return own.with_other(self.continuum.window).within(Window(inner.corner - margin, inner.size + 2.0 * margin))
 
     @property
     def in_words(self) -> str:
@@ -126,11 +119,12 @@ class Disks:
 class Field:
     """One field of the disks of a run, k times.
 
-    captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
-    of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
-    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
-    moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none;
-    walls (p, 2) m as they are drawn, None where they are at the start.
+    captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`, and
+    their `ends` (c, 2, 2) m, as by `crack_lines`; limits of the colour scale, equally far from zero for a field of
+    either sign; the name and unit of the field; the meaning of its sign, if the name does not give it; beyond (k, m),
+    values of the nodes of a continuum, None if it has none; moved (k, n, 2) and moved_beyond (k, m, 2) m,
+    displacements with which disks and nodes are drawn, None for none; walls (p, 2) m as they are drawn, None where
+    they are at the start; cut, whether values exceed the limits.
     """
 
     captions: list[str]
@@ -144,6 +138,12 @@ class Field:
     moved: np.ndarray | None = None
     moved_beyond: np.ndarray | None = None
     walls: tuple[np.ndarray, ...] | None = None
+    cut: bool = False
+
+    @property
+    def extend(self) -> Literal["neither", "max", "both"]:
+        """The ends of a colour bar at which values exceed it, for matplotlib."""
+        return "neither" if not self.cut else "both" if self.limits[0] < 0.0 else "max"
 
     @property
     def label(self) -> str:
@@ -177,146 +177,4 @@ def read_disks(file: h5py.File) -> Disks:
         foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
         faults=faults_in(file),
-    )
-
-
-@dataclass(frozen=True)
-class FieldInRecord:
-    """The place of a field in a record, and its largest values in all snapshots.
-
-    groups, all snapshots; dataset and beyond, names in each of them, the latter of a continuum, None for none; column
-    of both; words, sense and unit as of a `Field`, scale the SI value of the unit; largest (g,) size in each snapshot,
-    in the unit.
-    """
-
-    groups: Sequence[h5py.Group]
-    dataset: str
-    beyond: str | None
-    column: int
-    words: str
-    sense: str
-    unit: str
-    scale: float
-    largest: np.ndarray
-
-    @property
-    def limit(self) -> float:
-        """The end of the colour scale: the largest size, or 1 where all is zero."""
-        return float(self.largest.max()) or 1.0
-
-    def at(self, chosen: Sequence[h5py.Group]) -> Field:
-        """The field in some snapshots of the record, which must be open."""
-        times = [float(group.attrs["time"]) for group in chosen]
-        return Field(
-            captions=[f"t = {time:.3g} s" for time in times],
-            values=np.array([group[self.dataset][:, self.column] for group in chosen]) / self.scale,
-            beyond=None
-            if self.beyond is None
-            else np.array([group[self.beyond][:, self.column] for group in chosen]) / self.scale,
-            cracks=[cracks_until(chosen[0].file, time) for time in times],
-            limits=(-self.limit, self.limit),
-            name=self.words,
-            unit=self.unit,
-            sense=self.sense,
-        )
-
-
-def find_field(file: h5py.File, name: FieldName, component: str | None) -> FieldInRecord:
-    """A field of the snapshots of an open record, none of `OF_THE_RUN`; name and component as in `plot_scene`.
-
-    Raises CaseError when the record has no snapshots or does not have the field, or snapshots have no such field.
-    """
-    if name not in get_args(FieldName):
-        raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
-    groups = snapshots_of(file, required=True)
-    dataset = "stress" if name in STRESSES else name
-    if dataset not in groups[0]:
-        having = "static stages that stalled" if name == "unbalanced" else "runs with output.stress = true"
-        raise CaseError(
-            [f"{file.filename}: holds no {dataset.replace('unbalanced', 'unbalanced forces')}; {having} do"]
-        )
-    beyond = f"{GROUP}/{dataset}" if f"{GROUP}/{dataset}" in groups[0] else None
-    if dataset == "stress" and is_scattered(file):
-        beyond = None
-    largest = _largest(groups, dataset)
-    if beyond is not None:
-        largest = np.maximum(largest, _largest(groups, beyond, _outside_layers(file)))
-    scale = MEGA if name in STRESSES else 1.0
-    column, words, unit = _column(name, component, largest.max(axis=0))
-    return FieldInRecord(
-        groups, dataset, beyond, column, words, SENSES.get(name, ""), unit, scale, largest[:, column] / scale
-    )
-
-
-def evenly_chosen(count: int, most: int) -> list[int]:
-    """Numbers of up to `most` of `count` snapshots, evenly chosen, including the last."""
-    backwards = np.linspace(count - 1, 0, min(most, count))
-    return [round(number) for number in reversed(backwards)]
-
-
-def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
-    """A field of an open record; name and component as in `plot_scene`.
-
-    Without a snapshot number there are up to `most` snapshots, evenly chosen, including the last, or for 1 the one
-    in which the field is largest. The limits are those of the whole run, 1 where all is zero.
-
-    Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
-    """
-    if name in OF_THE_RUN:
-        if snapshot is not None:
-            raise CaseError([f"{name}: is of the whole run, not of a snapshot"])
-        return _peak(file) if name == "peak" else _layer(file)
-    found = find_field(file, name, component)
-    if snapshot is not None:
-        return found.at([snapshot_of(file, snapshot)])
-    if most == 1:
-        return found.at([found.groups[int(np.argmax(found.largest))]])
-    return found.at([found.groups[number] for number in evenly_chosen(len(found.groups), most)])
-
-
-def _largest(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndarray = slice(None)) -> np.ndarray:
-    """Largest size (g, columns) of a dataset, or of its chosen rows, in each of some snapshots."""
-    return np.array([np.abs(group[dataset][:][chosen]).max(axis=0, initial=0.0) for group in groups])
-
-
-def _outside_layers(file: h5py.File) -> np.ndarray:
-    """Nodes (m,) of the continuum outside the layers that absorb, in which the motion is not that of ground."""
-    return ~file[f"{GROUP}/absorbs"][:].astype(bool)
-
-
-def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int, str, str]:
-    """The column of a field, the field in words, and its unit; largest (3,) of each column in the run."""
-    if name in STRESSES:
-        return STRESSES.index(name), f"stress {name[-2:]}", "MPa"
-    column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
-    way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
-    if name == "unbalanced":
-        return column, f"unbalanced force {way}", "N"
-    return column, f"{name} {way}", UNITS[name][column]
-
-
-def _layer(file: h5py.File) -> Field:
-    """The number of the layer of every disk."""
-    if "layer" not in file["particles"]:
-        raise CaseError([f"{file.filename}: holds no layers; runs of cases with [[layer]] do"])
-    values = file["particles/layer"][:].astype(float)
-    count = float(values.max())
-    return Field([""], values[None], [cracks_until(file, 0.0)], (1.0, count), "layer", "1 at the surface")
-
-
-def _peak(file: h5py.File) -> Field:
-    """The largest speed of every disk, and of the nodes of a continuum, in the whole run."""
-    if "peak_velocity" not in file["particles"]:
-        raise CaseError([f"{file.filename}: holds no peaks; complete runs with output.peaks = true do"])
-    values = file["particles/peak_velocity"][:]
-    beyond = file[f"{GROUP}/peak_velocity"][:] if GROUP in file and not is_scattered(file) else None
-    largest = [values.max()] if beyond is None else [values.max(), beyond[_outside_layers(file)].max(initial=0.0)]
-    return Field(
-        captions=[f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"],
-        values=values[None],
-        cracks=[cracks_until(file, np.inf)],
-        beyond=None if beyond is None else beyond[None],
-        limits=(0.0, float(max(largest)) or 1.0),
-        name="largest speed",
-        unit="m/s",
     )

@@ -20,9 +20,11 @@ from dembound.gauge.gauge_io import Gauge
 from dembound.gauge.hopkinson import Faces, Specimen
 from dembound.gauge.spalling import Findings, Strength
 from dembound.plot.field import Field, read_disks
+from dembound.plot.field_reader import drawn_cracks
+from dembound.plot.places import displacement_of
 from dembound.plot.scene import draw_panel
 from dembound.plot.style import COLOURS, REFERENCE, Powers, finished, line_style, new_figure, styled
-from dembound.results.reader import cracks_until, open_record, snapshots_of
+from dembound.results.reader import open_record, snapshots_of
 from dembound.results.recording import LoadingCurve, TestName
 
 MEGA, MICRO = 1e6, 1e-6
@@ -108,7 +110,10 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         shown = Field(
             captions=[f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()],
             values=motion,
-            cracks=[cracks_until(file, time) for time in states.values()],
+            cracks=[
+                drawn_cracks(file, time, displacement_of(group), 0.0)
+                for time, group in zip(states.values(), nearest, strict=True)
+            ],
             limits=(-limit, limit),
             name=f"displacement along {'xy'[axis]}",
             unit="m",

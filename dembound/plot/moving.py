@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast, get_args
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -13,10 +12,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError
 from dembound.plot.bar import FIELDS, mark_damage, read_course
-from dembound.plot.disks import GROUP, Window
-from dembound.plot.field import OF_THE_RUN, Field, FieldInRecord, FieldName, find_field, read_disks
+from dembound.plot.disks import Window
+from dembound.plot.field import OF_THE_RUN, Field, FieldName, read_disks
+from dembound.plot.field_reader import FieldInRecord, find_field
 from dembound.plot.histories import plot_histories
-from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
+from dembound.plot.places import displacement_of, framed
+from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part, out_of_frame
 from dembound.plot.style import (
     COLOURS,
     Powers,
@@ -29,7 +30,7 @@ from dembound.plot.style import (
     time_unit,
 )
 from dembound.results.histories import read_histories
-from dembound.results.reader import cracks_until, open_record, reading, walls_at
+from dembound.results.reader import cracks_until, open_record, reading
 
 MOST_BELOW = 4
 """Number of monitors above which long rows of them are not shown in full below a body that moves."""
@@ -187,23 +188,22 @@ class MovingScene:
     field
         one of `CHANGING`, as in `plot_scene`.
     exaggerate
-        factor of the displacements of disks, nodes and cracks; 0 shows them at their first places. Monitors, outlines
-        of elements and ties do not move.
+        as of `plot_scene`. Monitors, outlines of elements and ties do not move.
 
     Raises CaseError when the file cannot be read, has no snapshots, or does not contain the field.
     """
 
     @styled
-    def __init__(self, run: Path, field: str = "velocity", exaggerate: float = 0.0) -> None:
+    def __init__(self, run: Path, field: str = "velocity", exaggerate: float | None = None) -> None:
         if field not in CHANGING:
             raise CaseError([f"field: is {field}, must be one of {', '.join(CHANGING)} for disks that move"])
-        self._run, self._exaggerate = run, exaggerate
+        self._run = run
         with open_record(run) as file:
             self._disks = read_disks(file)
-            found = find_field(file, cast(FieldName, field), None)
+            found = find_field(file, cast(FieldName, field), None, exaggerate)
             self.times = np.array([group.attrs["time"] for group in found.groups])
             self._cracks = [len(cracks_until(file, time)["time"]) for time in self.times]
-            self._window = self._widened(found)
+            self._window = self._framed(found)
             self._names = [group.name for group in found.groups]
             self._found = replace(found, groups=[])  # the file is closed
             largest = found.at([found.groups[int(np.argmax(found.largest))]])
@@ -211,9 +211,15 @@ class MovingScene:
         self._part = close_up(self._disks, largest.values[0]) if self._is_long else None
         self._make_panels()
         self._fill(last, len(self.times) - 1)
-        bar: dict[str, Any] = {"label": last.label, "shrink": 0.9, "pad": 0.02, "format": Powers()}
+        bar: dict[str, Any] = {
+            "label": last.label,
+            "shrink": 0.9,
+            "pad": 0.02,
+            "format": Powers(),
+            "extend": last.extend,
+        }
         self.figure.colorbar(self._colours, ax=self._panels, **bar)
-        moved = f", displacements × {exaggerate:g}" if exaggerate else ""
+        moved = f", displacements × {found.factor:g}" if found.factor not in (0.0, 1.0) else ""
         self.words = f"{self._disks.case}: {last.name} of {self._disks.in_words}{moved}"
         self.figure.suptitle("\n".join(filter(None, [self.words, self._disks.laws])), fontsize=11)
         outside_legend(self.figure, self._panels, columns=3)
@@ -224,15 +230,13 @@ class MovingScene:
         length, width = max(self._window.size), min(self._window.size)
         return bool(length > LONG * width)
 
-    def _widened(self, found: FieldInRecord) -> Window:
-        """The window of the whole scene with all exaggerated displacements."""
-        window = self._disks.window
-        if self._exaggerate == 0.0:
-            return window
-        names = ["displacement", *([f"{GROUP}/displacement"] if self._disks.continuum is not None else [])]
-        largest = max(float(np.abs(group[name][:, :2]).max()) for group in found.groups for name in names)
-        margin = abs(self._exaggerate) * largest
-        return Window(window.corner - margin, window.size + 2.0 * margin)
+    def _framed(self, found: FieldInRecord) -> Window:
+        """The window of the scene in all snapshots."""
+        disks = self._disks
+        if found.factor == 0.0:
+            return disks.window
+        moves = (found.factor * displacement_of(group) for group in found.groups)
+        return framed(disks.window, disks.positions, disks.radii, moves)
 
     def _make_panels(self) -> None:
         """Make one panel, and for a long scene another for the enlarged part: below, or beside an upright scene."""
@@ -258,13 +262,14 @@ class MovingScene:
         whole.clear()
         scale = self._scales[0]
         dots = self.figure.dpi
-        self._colours = draw_panel(whole, self._disks, shown, 0, self._window, scale * dots, counted=False)
+        self._colours = draw_panel(whole, self._disks, shown, 0, self._window, scale * dots, numbered=False)
         mark_monitors(whole, self._disks, scale)
-        whole.set_title(self.caption(index), pad=18)  # above the names of monitors at the top
+        out = out_of_frame(self._disks, shown, 0, self._window)
+        whole.set_title(self.caption(index) + out, pad=18)  # above the names of monitors at the top
         if self._part is not None:
             mark_part(whole, self._part)
             close[0].clear()
-            draw_panel(close[0], self._disks, shown, 0, self._part, self._scales[1] * dots, counted=False)
+            draw_panel(close[0], self._disks, shown, 0, self._part, self._scales[1] * dots, numbered=False)
 
     def caption(self, index: int) -> str:
         """The time of a frame, and how many bonds have broken until then."""
@@ -275,23 +280,6 @@ class MovingScene:
         """One frame as a picture (rows, pixels, 3)."""
         set_pixels(self.figure, pixels)
         with reading(self._run) as file:
-            group = file[self._names[index]]
-            shown = self._moved(group, self._found.at([group]))
+            shown = self._found.at([file[self._names[index]]])
         self._fill(shown, index)
         return pixels_of(self.figure)
-
-    def _moved(self, group: h5py.Group, shown: Field) -> Field:
-        """The field at a snapshot, with its disks, nodes and cracks moved by the exaggerated displacements."""
-        if self._exaggerate == 0.0:
-            return shown
-        moved = self._exaggerate * group["displacement"][:, :2]
-        cracks = [
-            each | {"position": each["position"] + moved[each["particles"]].mean(axis=1)} for each in shown.cracks
-        ]
-        beyond = None
-        if self._disks.continuum is not None:
-            beyond = self._exaggerate * group[f"{GROUP}/displacement"][:, :2][None]
-        walls = walls_at(group.file, float(group.attrs["time"]), self._exaggerate)
-        return replace(
-            shown, cracks=cracks, moved=moved[None], moved_beyond=beyond, walls=tuple(walls.values()) or None
-        )

@@ -7,14 +7,17 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
+from dembound.casefile.messages import counted
 from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
-from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
+from dembound.plot.field import Disks, Field, FieldName, read_disks
+from dembound.plot.field_reader import read_field
 from dembound.plot.lines import (
     ABOVE_CRACKS,
     ABOVE_DISKS,
@@ -24,6 +27,7 @@ from dembound.plot.lines import (
     mark_layers,
     mark_walls,
 )
+from dembound.plot.places import framed
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
 
@@ -51,14 +55,11 @@ SHORTEST = {"x": 0.8, "y": 0.4}
 TICK_APART, SMALL = 0.6, 7
 """Distance (inches) between numbers of a panel with room for three; size (points) of numbers without this room."""
 
-CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
-"""Names of the two kinds of cracks in the legend; shape, size in points² and colour of their marks."""
+CRACKS = {"bond broken in tension": "black", "bond broken in shear": "#C000C0"}
+"""Names of the two kinds of cracks in the legend; colours of their lines."""
 
-MANY_CRACKS = 500
-"""Number of cracks at the last time from which on their marks together keep their area, so that disks stay visible."""
-
-SMALLEST_CRACK = 0.1
-"""Least size of the mark of a crack over that of one of few."""
+CRACK_WIDTH, THINNEST_CRACK = 0.12, 0.6
+"""Width of the line of a crack in mean diameters, and its least width in points."""
 
 FOOT: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 1.4}
 """Line below which the continuum has no free field: above its elements, below its ties."""
@@ -73,38 +74,49 @@ def plot_scene(
     snapshot: int | None = None,
     field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
+    exaggerate: float | None = None,
 ) -> Figure:
-    """The scene at a snapshot, at its undeformed places, with the monitors and one colour scale for the run.
+    """The scene at a snapshot, with the monitors and one colour scale for the run.
 
-    Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
-    the legend has their number. A very long scene has another panel with an enlarged part of it. A continuum round the
-    disks has the same colours, its absorbing layers are hatched. Thin lines separate the layers of the ground.
+    The scale has 99.5 % of the disks, if the others are beyond twice of it. Bonds broken up to this time are lines
+    across them, as wide as the smaller disk; the legend has their number. A very long scene has another panel with an
+    enlarged part of it. A continuum round the disks has the same colours, its absorbing layers are hatched. Thin lines
+    separate the layers of the ground.
 
     Parameters
     ----------
     run
         the ``run.h5`` of a run.
     snapshot
-        number of the snapshot; negative ones count from the last. By default the one in which the field is largest; of
-        a long horizontal scene, as many as fit on the page, evenly chosen, one below the other.
+        number of the snapshot; negative ones count from the last. By default the one in which the field is largest, of
+        velocities a monitor's; of a long horizontal scene, as many as fit on the page, evenly chosen.
     field
         velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
         the whole run in m/s; layer, its number from the surface. The record must contain it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
+    exaggerate
+        factor of the displacements with which disks, nodes, walls and cracks are drawn; 0 shows them at their first
+        places. By default 1 if a disk moves by more than a tenth of the mean diameter in the run, else 0. Disks far
+        from all others are not in the frame, which has their number.
 
     Raises CaseError when the file cannot be read, has no such snapshot or does not contain the field.
     """
     with open_record(run) as file:
         disks = read_disks(file)
-        shown = read_field(file, field, component, snapshot, strips_on_page(disks.window))
-    width, height = disks.window.size
+        shown = read_field(file, field, component, snapshot, strips_on_page(disks.window), exaggerate)
+    window = disks.window
+    if shown.moved is not None:
+        window = framed(window, disks.positions, disks.radii, shown.moved)
+    width, height = window.size
     if max(width, height) > LONG * min(width, height):
-        figure, panels, colours = _draw_long(disks, shown)
+        figure, panels, colours = _draw_long(disks, shown, window)
     else:
-        figure, panels, colours = _draw_whole(disks, shown)
+        figure, panels, colours = _draw_whole(disks, shown, window)
     ticks = MaxNLocator(integer=True) if field == "layer" else None
-    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers(), ticks=ticks)
+    figure.colorbar(
+        colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers(), ticks=ticks, extend=shown.extend
+    )
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
     return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
 
@@ -117,28 +129,30 @@ def strips_on_page(scene: Window) -> int:
     return min(MOST_STRIPS, int(DRAWING[1] / (DRAWING[0] * width / length + STRIP_GAP)))
 
 
-def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
-    """Draw the scene in one panel."""
-    width, height = disks.window.size
+def _draw_whole(disks: Disks, shown: Field, window: Window) -> tuple[Figure, list[Axes], ScalarMappable]:
+    """Draw a window of the scene in one panel."""
+    width, height = window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
     rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
     figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
     panel = figure.subplots()
-    colours = draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
-    panel.set_title(shown.captions[0], pad=18)  # above the names of monitors at the top
+    colours = draw_panel(panel, disks, shown, 0, window, scale * figure.dpi)
+    panel.set_title(
+        shown.captions[0] + out_of_frame(disks, shown, 0, window), pad=18
+    )  # above the names of monitors at the top
     mark_monitors(panel, disks, scale)
     return figure, [panel], colours
 
 
-def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
-    """Draw a long scene as strips, one per time, and below or next to them an enlarged part of one of them."""
-    upright = bool(disks.window.size[1] > disks.window.size[0])
+def _draw_long(disks: Disks, shown: Field, window: Window) -> tuple[Figure, list[Axes], ScalarMappable]:
+    """Draw a window of a long scene as strips, one per time, and below or beside them an enlarged part of one."""
+    upright = bool(window.size[1] > window.size[0])
     count = len(shown.captions)
     framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
     part = close_up(disks, shown.values[framed])
     room = DRAWING[1] if upright else DRAWING[0]
-    scales = [room / max(window.size) for window in (disks.window, part)]
-    strip, close = (scale * min(w.size) for scale, w in zip(scales, (disks.window, part), strict=True))
+    scales = [room / max(each.size) for each in (window, part)]
+    strip, close = (scale * min(each.size) for scale, each in zip(scales, (window, part), strict=True))
     sizes = [strip] * count + [close]
     if upright:
         figure = new_figure(sum(sizes) + 4.2, room + 1.4)
@@ -146,17 +160,20 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
     else:
         figure = new_figure(room + 2.6, max(sum(sizes) + STRIP_GAP * count, 1.3) + 2.2)
         panels = figure.subplots(count + 1, 1, height_ratios=sizes)
-    _draw_strips(panels[:-1], disks, shown, scales[0] * figure.dpi)
+    _draw_strips(panels[:-1], disks, shown, window, scales[0] * figure.dpi)
     colours = draw_panel(panels[-1], disks, shown, framed, part, scales[1] * figure.dpi)
     mark_part(panels[framed], part)
     mark_monitors(panels[0], disks, scales[0])
     return figure, list(panels), colours
 
 
-def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -> None:
-    """Draw the scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
+def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, window: Window, scale: float) -> None:
+    """Draw a window of the scene at each of its times, in panels (k,) with one axis at the last.
+
+    scale : in pixels per metre.
+    """
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
-        draw_panel(panel, disks, shown, index, disks.window, scale)
+        draw_panel(panel, disks, shown, index, window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
         panel.annotate(caption, (1.0, 0.5), (8, 0), xycoords="axes fraction", **beside)
     for panel in panels[:-1]:
@@ -189,11 +206,11 @@ def part_around(disks: Disks, centre: np.ndarray) -> Window:
 
 
 def draw_panel(
-    panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float, counted: bool = True
+    panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float, numbered: bool = True
 ) -> ScalarMappable:
     """A window of the scene at one of its times, at `scale` pixels per metre.
 
-    counted : labels have numbers of cracks.
+    numbered : labels have numbers of cracks.
     """
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
     colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale, disks.holes)
@@ -213,7 +230,7 @@ def draw_panel(
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
     if shown.moved is None:
         mark_faults(panel, disks)
-    _mark_cracks(panel, shown, index, counted)
+    _mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi
         if inches > SHORTEST[name]:
@@ -226,18 +243,27 @@ def draw_panel(
     return colours
 
 
-def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:
-    """A mark at each bond broken up to one of the times; the legend may have their number at the last time."""
+def _mark_cracks(panel: Axes, shown: Field, index: int, numbered: bool, diameter: float) -> None:
+    """A line at each bond broken up to one of the times; the legend may have their number at the last time.
+
+    diameter : mean, in points.
+    """
     until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
-    share = min(1.0, max(SMALLEST_CRACK, MANY_CRACKS / max(1, len(shown.cracks[-1]["position"]))))
-    for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
-        places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
-        if len(places) > 0:
-            looks: dict[str, Any] = {"color": colour, "edgecolors": "white", "zorder": ABOVE_DISKS}
-            x, y = places.T
-            number = f" ({len(last):,}{until})" if counted else ""
-            looks["linewidths"] = 0.5 * share
-            panel.scatter(x, y, s=share * size, marker=mark, label=f"{label}{number}", **looks)
+    width = max(THINNEST_CRACK, CRACK_WIDTH * diameter)
+    for shear, (label, colour) in enumerate(CRACKS.items()):
+        lines, last = (each["ends"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
+        if len(lines) > 0:
+            number = f" ({len(last):,}{until})" if numbered else ""
+            looks: dict[str, Any] = {"colors": colour, "linewidths": width, "zorder": ABOVE_DISKS}
+            panel.add_collection(LineCollection(list(lines), label=f"{label}{number}", **looks), autolim=False)
+
+
+def out_of_frame(disks: Disks, shown: Field, index: int, window: Window) -> str:
+    """How many disks are out of a window of the scene at one of its times, as the end of a caption; "" for none."""
+    if shown.moved is None:
+        return ""
+    count = np.count_nonzero(~window.touches(disks.positions + shown.moved[index], disks.radii))
+    return f", {counted(int(count), 'disk')} farther away" if count else ""
 
 
 def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from dembound.errors import CaseError, RecordError, visible
 from dembound.files import require_folder, write_text
 from dembound.plot.energy import plot_energy
-from dembound.plot.field import evenly_chosen
+from dembound.plot.field_reader import evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
 from dembound.plot.record import plot_spectra
 from dembound.report import tables
@@ -188,7 +188,7 @@ def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> Sho
 
 def _frames(run: ReportedRun) -> Frames | None:
     """The scene at its snapshots; None if there is only one."""
-    moving = run.kind.moving_picture(run.record, None, 0.0)
+    moving = run.kind.moving_picture(run.record, None, None)
     if len(moving.times) == 1:
         return None
     pixels = round(FRAME_DOTS * moving.width)

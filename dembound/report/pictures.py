@@ -207,7 +207,7 @@ def movie_of(
     record: Path,
     *,
     field: str | None = None,
-    exaggerate: float = 0.0,
+    exaggerate: float | None = None,
     monitors: Sequence[str] | None = None,
     every: int = 1,
     pixels: int = 960,
@@ -221,7 +221,8 @@ def movie_of(
     field
         field that colours disks, or is drawn along a bar; by default velocity, for a bar stress and damage.
     exaggerate
-        factor of the displacements; 0 shows nodes at their first places.
+        factor of the displacements; 0 shows nodes at their first places, None disks where they are once they have moved
+        by a tenth of a diameter.
     monitors
         monitors whose histories are drawn below; by default all, none if empty.
     every

@@ -196,14 +196,14 @@ class Bars(Kind[BarCase, BarScene]):
         if has_monitors(record):
             yield "histories_stress", plot_histories([record], quantity="stress")
 
-    def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
+    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
         """One field over place and time."""
         from dembound.plot.bar import plot_bar_field
 
         return plot_bar_field(record, field, snapshot)
 
-    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float | None) -> MovingPicture:
         """Fields along the bar, by default stress and damage."""
         from dembound.plot.moving import MovingBar
 
-        return MovingBar(record, ("stress", "damage") if field is None else (field,), exaggerate)
+        return MovingBar(record, ("stress", "damage") if field is None else (field,), exaggerate or 0.0)

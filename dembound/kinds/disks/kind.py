@@ -205,7 +205,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
         yield "scene", plot_scene(record)
 
-    def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
+    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
         """The scene with disks coloured by a field, or with lines for the forces of contacts."""
         from dembound.plot.field import FORCES
         from dembound.plot.packing import plot_chains
@@ -213,9 +213,9 @@ class Disks(Kind[DiskCase, DiskScene]):
 
         if field == FORCES:
             return plot_chains(record, snapshot)
-        return plot_scene(record, snapshot, cast("FieldName", field))
+        return plot_scene(record, snapshot, cast("FieldName", field), exaggerate=exaggerate)
 
-    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float | None) -> MovingPicture:
         """The scene with disks coloured by a field, by default velocity."""
         from dembound.plot.moving import MovingScene
 

@@ -33,9 +33,9 @@ def test_what_would_stop_a_run_is_found_before_it(spalling) -> None:
 
 
 def test_what_a_bar_has_is_drawn(spalled_run, tmp_path) -> None:
-    assert len(Bars().field_picture(spalled_run, "damage", None).axes) > 0
+    assert len(Bars().field_picture(spalled_run, "damage", None, None).axes) > 0
     with pytest.raises(CaseError):
-        Bars().field_picture(spalled_run, "stress_xx", None)
+        Bars().field_picture(spalled_run, "stress_xx", None, None)
     unwatched = tmp_path / "run.h5"
     unwatched.write_bytes(spalled_run.read_bytes())
     with h5py.File(unwatched, "r+") as file:

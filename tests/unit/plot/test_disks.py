@@ -11,6 +11,7 @@ from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
 from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, read_holes
+from dembound.plot.field import SHOWN_LAYER
 from dembound.plot.moving import MovingScene
 from dembound.plot.scene import plot_scene
 from dembound.results.recorder import Recorder
@@ -124,7 +125,9 @@ def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, fie
 
 def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> None:
     panel = plot_scene(surrounded_run).axes[0]
-    np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], [LEFT, RIGHT, BOTTOM, TOP])
+    seen = SHOWN_LAYER * 18.0  # of the layers, beyond 18 m of disks and elements
+    ends = [-3.0 - seen, 15.0 + seen, -3.0 - seen, TOP]
+    np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], ends)
     triangles = only(TriMesh, panel)._triangulation  # which cover the cells once
     x, y = (of[triangles.triangles] for of in (triangles.x, triangles.y))
     twice = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])

@@ -100,8 +100,38 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke_above_the_disks(crack
         past = cracks["time"][:] <= file[f"snapshots/{snapshot:04d}"].attrs["time"]
         for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
             expected = cracks["position"][past & (cracks["shear"][:] == shear)]
-            np.testing.assert_array_equal(marks[f"{label} ({len(expected)})"].get_offsets(), expected)
+            lines = np.array(marks[f"{label} ({len(expected)})"].get_segments())
+            np.testing.assert_allclose(lines.mean(axis=1), expected, rtol=1e-12)
             assert len(expected) > 0
+
+
+def test_colours_span_the_disks_but_for_few_that_are_beyond_twice_their_scale(tmp_path):
+    """One thrown disk of 800 has a colour beyond the bar, whose ends say so."""
+    for thrown, end, extend in ((570.0, 2.0, "both"), (3.0, 3.0, "neither")):
+        path = block(tmp_path / "run.h5", 40, 20, lambda x: np.where(x > 20.0, 2.0, -1.0))
+        with h5py.File(path, "a") as file:
+            file["snapshots/0000/velocity"][17, 0] = thrown
+        panel, bar = plot_scene(path).axes
+        assert disks_of(panel).get_clim() == (-end, end)
+        assert bar._colorbar.extend == extend
+
+
+def test_moved_disks_are_drawn_where_they_are_in_a_frame_without_those_far_away(tmp_path):
+    """Of 4,000 disks one is 300 m away: the frame ends where the others are, and its title says so."""
+    path = block(tmp_path / "run.h5", 80, 50, lambda x: x)
+    shift = np.tile([7.0, 0.0, 0.0], (4000, 1))
+    shift[0, 0] = 300.0
+    with h5py.File(path, "a") as file:
+        file["snapshots/0000/displacement"] = shift
+        first = file["particles/position"][:]
+    panel = plot_scene(path).axes[0]
+    assert len(disks_of(panel).get_offsets()) == 3999
+    np.testing.assert_array_equal(disks_of(panel).get_offsets(), first[1:] + shift[1:, :2])
+    assert panel.get_xlim() == (0.0, 87.0)
+    assert panel.get_title() == "t = 0.5 s, 1 disk farther away"
+    panel = plot_scene(path, exaggerate=0.0).axes[0]
+    np.testing.assert_array_equal(disks_of(panel).get_offsets(), first)
+    assert (panel.get_xlim(), panel.get_title()) == ((0.0, 80.0), "t = 0.5 s")
 
 
 def test_small_disks_give_way_to_their_mean(run):
