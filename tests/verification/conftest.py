@@ -1,6 +1,6 @@
 """The lab in which physical claims are tested: cases from a few words, and their motion at chosen places."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import tomli_w
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
+from dembound.disks.contacts import layout
 from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.material.case_material import make_packed_material
 from dembound.disks.material.confined import confined
@@ -295,3 +296,13 @@ class Rock:
 @pytest.fixture(scope="session")
 def rock() -> Rock:
     return Rock()
+
+
+@pytest.fixture
+def hold_in_order(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
+    """Has disks held one by one, not in rows of copies.
+
+    Kernels of rows for a stress and for strengths by layer in one, or for Hertz's law, would be compiled for a test or
+    two alone; each has them in others, here, in test_limits_by_layer.py and, by eight pairs, in laws/test_law.py.
+    """
+    return lambda: monkeypatch.setattr(layout, "_plan", lambda part, levels: None)

@@ -132,8 +132,12 @@ def test_the_step_limit_and_factors_of_sides_follow_the_tangent():
     assert reserve(scene.ground) == pytest.approx(RESERVE * scene.ground.overlaps.max())
 
 
-@pytest.mark.parametrize("pattern", ["A", "B"])
-def test_pressed_ground_is_at_rest_from_the_start(pattern):
+@pytest.mark.parametrize(
+    ("pattern", "in_rows"), [("A", False), ("B", False), pytest.param("A", True, marks=pytest.mark.slow)]
+)
+def test_pressed_ground_is_at_rest_from_the_start(hold_in_order, pattern, in_rows):
+    if not in_rows:
+        hold_in_order()
     random = {"brick": [4.0, 4.0], "seed": 1, "radius_ratio": 1.5} if pattern == "B" else {}
     packing = {"pattern": pattern, "size": [4.0, 4.0], "radius": RADIUS} | random
     case = small(GROUND | {"packing": packing, "boundary": {}})
@@ -146,7 +150,8 @@ def test_pressed_ground_is_at_rest_from_the_start(pattern):
         assert settled.stress == pytest.approx([-1e6, -1e6, 0.0], rel=1e-9, abs=1.0)
 
 
-def test_a_run_stops_before_its_contacts_are_too_stiff_for_the_step():
+def test_a_run_stops_before_its_contacts_are_too_stiff_for_the_step(hold_in_order):
+    hold_in_order()
     load = {"name": "weight", "acceleration": [0.0, -9.81]}
     tables = {key: value for key, value in GROUND.items() if key != "static"} | {
         "boundary": {"bottom": {"type": "fixed"}}

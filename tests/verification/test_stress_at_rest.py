@@ -7,7 +7,6 @@ beyond the sides. Under weight with K0 they are scaled by height, which leaves e
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import layout
 from dembound.disks.rest.settled import Settled
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import DiskScene, build
@@ -42,15 +41,6 @@ def ground(lab, pattern: str, sides, material=None, *, hole=False, size=(20.0, 2
 def silent(name: str) -> dict[str, str]:
     """Sides of `SIDES` without a wave."""
     return SIDES[name] | {"bottom": "outside" if name == "continuum" else "viscous"}
-
-
-def hold_in_order(patch: pytest.MonkeyPatch) -> None:
-    """Have disks held one by one, not in rows of copies.
-
-    Kernels of rows for a stress and for strengths by layer in one would be compiled for two tests alone; each has them
-    in others, here and in test_limits_by_layer.py.
-    """
-    patch.setattr(layout, "_plan", lambda part, levels: None)
 
 
 def speed(lab, scene: DiskScene, found: Settled, steps: int = 500) -> float:
@@ -179,7 +169,7 @@ def test_each_layer_has_its_own_k0(lab, law: str) -> None:
         *(pytest.param(name, DAMPED, marks=pytest.mark.slow) for name in ("column", "wrapped")),
     ],
 )
-def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, monkeypatch, name: str, material) -> None:
+def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, hold_in_order, name: str, material) -> None:
     """Each layer keeps its K0 and has its strengths; the ground rests with a hole, and a wave passes from below."""
     layers = [
         {"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8},
@@ -188,7 +178,7 @@ def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, monkeypatch, name: s
     ]
     bonded = "law" in material
     if bonded:
-        hold_in_order(monkeypatch)
+        hold_in_order()
     layers[0] |= {"pb_ten": 2e5, "pb_coh": 4e5, "fric": 0.4} if bonded else {}
     silence = ground(lab, "A", silent(name), material, hole=True, size=(20.0, 30.0), static=K0, load=WEIGHT)
     layered = build(with_changes(silence.case, {"layer": layers}))
@@ -210,9 +200,9 @@ def test_layers_under_k0_a_hole_and_a_wave_go_together(lab, monkeypatch, name: s
 
 
 @pytest.mark.parametrize("name", [n if n == "column" else pytest.param(n, marks=pytest.mark.slow) for n in SIDES])
-def test_layers_at_rest_begin_to_slide_at_their_load_factor(lab, monkeypatch, name: str) -> None:
+def test_layers_at_rest_begin_to_slide_at_their_load_factor(lab, hold_in_order, name: str) -> None:
     """Found under the elastic law; 0.1 % below it nothing slides in the geometry of the start, 0.1 % above it does."""
-    hold_in_order(monkeypatch)
+    hold_in_order()
     layers = [{"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8}, {"density": 2300.0, "k0": 0.6}]
     wave, static = PULSE | {"period": 0.05}, K0 | {"ratio": 1e-9}
     plain = ground(lab, "A", SIDES[name], {"fric": 0.9}, wave=wave, static=static, load=WEIGHT)
