@@ -19,6 +19,7 @@ from dembound.disks.faces.found import Faces
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import AtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
+from dembound.disks.material.grouped import GroupedGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.layered_waves import Undisturbed
@@ -104,7 +105,7 @@ class DiskBody(Scene):
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
     all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
-    faces : of its joints.
+    faces : of its joints. groups : the ground of its disks, of which some are in groups; None without groups.
     """
 
     case: DiskCase
@@ -123,6 +124,7 @@ class DiskBody(Scene):
     surface: np.ndarray | None = None
     all_intact: bool = False
     faces: tuple[Faces, ...] = ()
+    groups: GroupedGround | None = None
 
     kind = "disks"
     energy_unit = "J/m"
@@ -157,6 +159,11 @@ class DiskBody(Scene):
         """Of a free field the side and the surface of its ground."""
         ground = self.case, self.seams, self.outside, self.monitored[name]
         return free_field_attributes(*ground) if name.endswith(FREE_FIELD) else {}
+
+    @property
+    def inside(self) -> PackedMaterial:
+        """The ground of the disks of the body, with its groups, by which their contacts are."""
+        return self.groups or self.ground
 
     @property
     def disk_count(self) -> int:
@@ -309,7 +316,7 @@ class DiskBody(Scene):
     @cached_property
     def bonded(self) -> np.ndarray:
         """Whether each disk (m,) has a bond as built."""
-        constants = brick_constants(self.ground, gaps_close=False, locked_in=0.0)
+        constants = brick_constants(self.inside, gaps_close=False, locked_in=0.0)
         bonds = self.assembly.pairs[self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0]
         return np.bincount(bonds.ravel(), minlength=self.disk_count) > 0
 

@@ -32,6 +32,7 @@ from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.faces.found import with_joints
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
+from dembound.disks.material.grouped import GroupedGround
 from dembound.disks.material.layered import LayeredGround, layered
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.unlike import UnlikeGround
@@ -115,7 +116,7 @@ class DiskScene(DiskBody):
 
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
-        contacts = plain_contacts(self.ground, self.assembly, self.layout.slot)
+        contacts = plain_contacts(self.inside, self.assembly, self.layout.slot)
         return particle_stress(self, contacts, displacement, REFERENCE)
 
     @property
@@ -238,10 +239,14 @@ def _scene(
     count, surface = len(assembly.radii), case.surface
     assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
     assembly, seams = with_layers(ground, assembly, seams)
+    first, inside, groups = columns_end(seams), ground, None
+    if case.group:
+        inside = groups = GroupedGround.of(ground, case, body)
+        assembly = groups.typed(assembly, first)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
         assembly,
-        ground.stepped,
+        inside.stepped,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
         levels_by_part(case, ground, assembly, seams, surface),
@@ -273,6 +278,7 @@ def _scene(
         ground_waves=waves,
         surface=surface,
         faces=faces,
+        groups=groups,
     )
     return with_waves(scene, case.wave)
 
@@ -301,7 +307,7 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    without: dict[str, Any] = {"load": everywhere, "hole": (), "wall": (), "joint": (), "monitor": ()}
+    without: dict[str, Any] = {"load": everywhere, "group": (), "hole": (), "wall": (), "joint": (), "monitor": ()}
     alone = replace(case, boundary=sides | upright, static=static, ground=case.ground.level(), **without)
     standing = Standing((), seam.top)
     column = standing.tiled(brick, case.column_rows[1], case.box[:2])
