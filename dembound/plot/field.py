@@ -1,7 +1,7 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, get_args
 
@@ -11,7 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
-from dembound.plot.lines_of_ground import LayersOfSide, faults_in, foot_in, layers_in
+from dembound.plot.lines_of_ground import LayersOfSide, areas_in, faults_in, foot_in, gone_at, layers_in
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import (
     COMPONENTS,
@@ -55,7 +55,7 @@ class Disks:
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
     ground; foot, the height (m) below which motion of the continuum is without the free field; walls and faults:
-    points (k, 2) m of each wall and joint.
+    points (k, 2) m of each wall and joint; areas, corners (k, 2) m of groups, and of later holes, by name.
     """
 
     positions: np.ndarray
@@ -71,6 +71,7 @@ class Disks:
     foot: float | None = None
     walls: tuple[np.ndarray, ...] = ()
     faults: tuple[np.ndarray, ...] = ()
+    areas: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @cached_property
     def own_window(self) -> Window:
@@ -130,7 +131,7 @@ class Field:
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
     of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
     moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none;
-    walls (p, 2) m as they are drawn, None where they are at the start.
+    walls (p, 2) m as they are drawn, None where they are at the start; gone (k, n) bool, disks that have vanished.
     """
 
     captions: list[str]
@@ -144,6 +145,7 @@ class Field:
     moved: np.ndarray | None = None
     moved_beyond: np.ndarray | None = None
     walls: tuple[np.ndarray, ...] | None = None
+    gone: np.ndarray | None = None
 
     @property
     def label(self) -> str:
@@ -177,6 +179,7 @@ def read_disks(file: h5py.File) -> Disks:
         foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
         faults=faults_in(file),
+        areas=areas_in(file),
     )
 
 
@@ -207,6 +210,7 @@ class FieldInRecord:
     def at(self, chosen: Sequence[h5py.Group]) -> Field:
         """The field in some snapshots of the record, which must be open."""
         times = [float(group.attrs["time"]) for group in chosen]
+        ends = gone_at(chosen[0].file)
         return Field(
             captions=[f"t = {time:.3g} s" for time in times],
             values=np.array([group[self.dataset][:, self.column] for group in chosen]) / self.scale,
@@ -218,6 +222,7 @@ class FieldInRecord:
             name=self.words,
             unit=self.unit,
             sense=self.sense,
+            gone=None if ends is None else np.array(times)[:, None] > ends,
         )
 
 
