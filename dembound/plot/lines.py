@@ -44,7 +44,7 @@ def mark_areas(panel: Axes, disks: Disks) -> None:
         top = points[np.lexsort((points[:, 0], -points[:, 1].round(9)))[0]]
         place: dict[str, Any] = {"xytext": (3.0, -3.0), "textcoords": "offset points", "va": "top"}
         plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-        panel.annotate(name, tuple(top), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, annotation_clip=True, **place)
+        panel.annotate(name, tuple(top), fontsize=7, bbox=plate, zorder=ABOVE_CRACKS, annotation_clip=True, **place)
 
 
 def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:

@@ -267,7 +267,8 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.static is None:
         return {}
     tables = {name: getattr(case, name) for name in ("packing", "material", "motion", "static")}
-    tables["hole"] = [{**every_key(hole)} for hole in case.hole if hole.stage != "run"]
+    holes = [every_key(hole) for hole in case.hole if hole.stage != "run"]
+    tables["hole"] = [{key: each for key, each in hole.items() if key != "time"} for hole in holes]
     loads = [load for load in case.load if load.wave is None]
     sides = {side: every_key(table) for side, table in case.boundary.items() if table.needs_column}
     joined = {side: {"type": t.type} for side, t in case.boundary.items() if t.is_periodic or t.is_mirror}
@@ -283,7 +284,7 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.intact:
         keys["intact"] = case.intact
     if case.group:
-        places = ("region", "points")
+        places = ("region", "points", "rr_fric")
         keys["group"] = [
             {
                 key: each
