@@ -11,7 +11,7 @@ from dembound.casefile.disks.layer import Differing, as_in_material, problems_of
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.stiffness import RATIO_KEYS, STIFFNESS_KEYS
 from dembound.casefile.disks.targets import with_history
-from dembound.casefile.messages import corners, numbered, show
+from dembound.casefile.messages import corners, numbered
 from dembound.casefile.types import LAWS
 from dembound.holes import Polygon, Rectangle
 from dembound.holes.polygon import Points
@@ -116,10 +116,6 @@ class Group(Differing):
 def group_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the groups with all other tables; a table, or an entry, that is invalid on its own is None."""
     groups, material = dict(numbered("group", tables["group"])), tables["material"]
-    first = dict[str, str]()
-    for place, group in groups.items():
-        if first.setdefault(group.name, place) != place:
-            yield f"{place}.name: {show(group.name)} is taken by {first[group.name]}"
     if len(tables["group"]) > MOST:
         yield f"group: there are {len(tables['group'])}, must be at most {MOST}"
     if not (groups and material):
