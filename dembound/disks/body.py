@@ -56,8 +56,7 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     if not ground.is_layered:
         return assembly, tuple(seams)
     places, types = assembly.positions, 2 * len(ground.brick.pairs)
-    first, second = assembly.pairs.T
-    pairing = ground.pairing_of(places[first], places[second])
+    pairing = ground.pairing_of(*places[assembly.pairs.T])
     assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
     own = []
     for seam in seams:
@@ -89,18 +88,15 @@ class DiskBody(Scene):
 
     Attributes
     ----------
-    case : the case it was built from.
-    ground : brick and material.
+    case : the case it was built from. ground : brick and material.
     assembly : the tiled brick: positions (n, 2) m, radii (n,) m, brick_particle (n,), contacts.
-    rows : contacts of the elastic law for the kernels, of each part.
-    edges : side -> its exposed particles, for every side that is not periodic.
-    supports : the table of forces from outside, loads that follow a wave included.
+    rows : contacts of the elastic law for the kernels, of each part. edges : side -> its exposed particles, for every
+    side that is not periodic. supports : the table of forces from outside, loads that follow a wave included.
     monitors : name -> particle, or the nearest node of the continuum.
     seams : the connections between free-field columns, whose particles come first in the arrays, and the body; one
     column stands for the ground at all sides, or of two the first for that at the left and below.
-    slots : the slots in which kernels hold its particles; None: in their order.
-    outside : the continuum on some sides, whose nodes follow the particles; None for none.
-    feet : the continua below the free-field columns, whose nodes come last.
+    slots : the slots in which kernels hold its particles; None: in their order. outside : the continuum on some sides,
+    whose nodes follow the particles; None for none. feet : those below the free-field columns, whose nodes come last.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
@@ -260,9 +256,8 @@ class DiskBody(Scene):
         count = self.disk_count
         twin, other = self.seams[0].twin, self.seams[-1].twin
         if len(self.seams) > 1:
-            own = np.arange(count)
             beyond = self.assembly.positions[:, 0] > self.case.middle
-            twin = np.where(((beyond & (other != own)) | (twin == own)), other, twin)
+            twin = np.where(((beyond & (other != np.arange(count))) | (twin == np.arange(count))), other, twin)
         return np.concatenate([twin, np.arange(count, self.count)])
 
     @property

@@ -62,7 +62,7 @@ def velocity(simulation: Simulation, disks: np.ndarray) -> np.ndarray:
 
 
 def test_a_weakened_row_lets_the_block_slide_as_a_rigid_one(lab) -> None:
-    """Contacts across the border of a group have the weaker limits. The bonds' half of the weight passes to contacts."""
+    """Contacts across the border have the weaker limits. The bonds' half of the weight passes to contacts."""
     simulation, ledger = run(lab, block(lab, group=[BASE | {"time": BEGINS}]))
     free = upper(simulation.scene, 0.5)
     since = simulation.time - 0.5 * simulation.time_step - BEGINS
@@ -101,7 +101,7 @@ def test_a_row_that_vanishes_lets_the_block_fall(lab) -> None:
 
 
 def test_a_hole_in_motion_takes_its_energy_out_of_the_ledger(lab) -> None:
-    """The lower half of a falling and swinging block vanishes: half of its energy of motion, and what contacts store."""
+    """The lower half of a falling and swinging block vanishes: half of its energy of motion, and what it stores."""
     hole = {"name": "half", "type": "rectangle", "corners": [0.0, 0.0, 6.0, 1.5], "stage": "run", "time": 0.03}
     case = block(lab, 0.0, "top", hole=[hole], **{"static.boundary.top.until": BEGINS})
     simulation, ledger = run(lab, case, 0.029)

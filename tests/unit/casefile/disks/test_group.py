@@ -119,3 +119,11 @@ def test_groups_and_holes_take_disks_and_none_of_a_side(changes: dict, line: str
     case = small(BLOCK, changes=changes)
     found = problems_in(lambda: kind_of(case).build(case))
     assert any(each.startswith(line) for each in found), found
+
+
+def test_types_of_contacts_are_the_same_before_and_after_an_excavation() -> None:
+    """The last contact across the border of a group is dug out."""
+    drift = {"name": "drift", "type": "rectangle", "corners": [0.5, 1.0, 1.5, 2.0], "stage": "after"}
+    scene = build(small(BLOCK, changes={"hole": [drift], "group": [WEAK | {"region": [0.5, 1.0, 1.5, 2.0]}, LATER]}))
+    assert scene.before is not None
+    assert scene.groups is scene.before.groups
