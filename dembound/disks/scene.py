@@ -115,9 +115,8 @@ class DiskScene(DiskBody):
 
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
-        return particle_stress(
-            self, plain_contacts(self.inside, self.assembly, self.layout.slot), displacement, REFERENCE
-        )
+        pairs = plain_contacts(self.inside, self.assembly, self.layout.slot)
+        return particle_stress(self, pairs, displacement, REFERENCE)
 
     @property
     def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
@@ -172,8 +171,7 @@ class DiskScene(DiskBody):
 def build(case: DiskCase) -> DiskScene:
     """Build the scene of a case: pack, tile, make holes and add supports.
 
-    Raises PackingError when the brick cannot be made or no particle remains, CaseError when no particle of a side
-    remains, or when a run needs more RAM than there is.
+    Raises PackingError without a brick or particles, CaseError for a side without any, and for a lack of RAM.
     """
     must_fit_here(case)
     ground = ground_of(case)

@@ -248,6 +248,8 @@ def _in_run(place: str, hole: Hole, tables: Mapping[str, Any]) -> Iterator[str]:
     """What an excavation during the run does not go with; a table that is invalid on its own is None."""
     if (material := tables["material"]) and not (LAWS[material.law].has_history and LAWS[material.law].starts_elastic):
         yield f'{place}.stage: is "run", which needs contacts that open; give material.law = "linearpbond"'
+    if any(table and table.quality_factor is not None for table in (material, *tables["layer"])):
+        yield f'{place}.stage: is "run", which is for undamped ground; leave quality_factor out'
     for where, load in numbered("load", tables["load"]):
         if load.hole == hole.name:
             yield f"{where}.hole: {show(hole.name)} is made during the run; a pressure acts in a hole made before"
