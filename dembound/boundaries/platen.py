@@ -6,7 +6,7 @@ In such a zone beside a side forces at rest always have ground to act on.
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, Self
 
-from pydantic import field_validator
+from pydantic import field_validator, model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
@@ -55,6 +55,10 @@ class Holding(Keeping):
         help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
     )
 
+    until: float | None = quantity(
+        None, unit="s", help="of a static side: time of the run at which kept reactions end; absent: never", ge=0.0
+    )
+
     @field_validator("within")
     @classmethod
     def _ascends(cls, within: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -65,9 +69,16 @@ class Holding(Keeping):
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """A range of an end of a bar, or one beside the disks, and reactions, which are of the static stage."""
         yield from super().problems(side, tables)
-        if "reactions" in self.model_fields_set:
-            yield f"boundary.{side}.reactions: is of the static stage; give it to static.boundary.{side}"
+        for key in ("reactions", "until"):
+            if key in self.model_fields_set:
+                yield f"boundary.{side}.{key}: is of the static stage; give it to static.boundary.{side}"
         yield from beside_disks(f"boundary.{side}", side, self, tables)
+
+    @model_validator(mode="after")
+    def _ends_once(self) -> Self:
+        if self.until is not None and self.reactions == "none":
+            raise ValueError('until: is of reactions that are "kept"')
+        return self
 
     def on_whole_side(self) -> Self:
         """The side with all its particles held."""

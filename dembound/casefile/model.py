@@ -194,8 +194,8 @@ def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, s
 
 
 def monitor_problems(tables: Tables) -> Iterator[str]:
-    """Holes, loads or monitors whose results would overwrite one another, and too many monitors."""
-    for key in ("hole", "wall", "load", "monitor"):
+    """Groups, holes, loads or monitors whose results would overwrite one another, and too many monitors."""
+    for key in ("group", "hole", "wall", "load", "monitor"):
         first: dict[str, int] = {}
         for number, table in enumerate(tables.get(key, ()), start=1):
             if table and first.setdefault(table.name, number) != number:

@@ -19,6 +19,7 @@ from dembound.disks.faces.found import Faces
 from dembound.disks.intact import intact_disks, intact_zones
 from dembound.disks.material.at_rest import AtRest, stress_at_rest
 from dembound.disks.material.constants import brick_constants
+from dembound.disks.material.grouped import GroupedGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.layered_waves import Undisturbed
@@ -55,8 +56,7 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     if not ground.is_layered:
         return assembly, tuple(seams)
     places, types = assembly.positions, 2 * len(ground.brick.pairs)
-    first, second = assembly.pairs.T
-    pairing = ground.pairing_of(places[first], places[second])
+    pairing = ground.pairing_of(*places[assembly.pairs.T])
     assembly = replace(assembly, contact_type=(assembly.contact_type + types * pairing).astype(np.int32))
     own = []
     for seam in seams:
@@ -88,23 +88,20 @@ class DiskBody(Scene):
 
     Attributes
     ----------
-    case : the case it was built from.
-    ground : brick and material.
+    case : the case it was built from. ground : brick and material.
     assembly : the tiled brick: positions (n, 2) m, radii (n,) m, brick_particle (n,), contacts.
-    rows : contacts of the elastic law for the kernels, of each part.
-    edges : side -> its exposed particles, for every side that is not periodic.
-    supports : the table of forces from outside, loads that follow a wave included.
+    rows : contacts of the elastic law for the kernels, of each part. edges : side -> its exposed particles, for every
+    side that is not periodic. supports : the table of forces from outside, loads that follow a wave included.
     monitors : name -> particle, or the nearest node of the continuum.
     seams : the connections between free-field columns, whose particles come first in the arrays, and the body; one
     column stands for the ground at all sides, or of two the first for that at the left and below.
-    slots : the slots in which kernels hold its particles; None: in their order.
-    outside : the continuum on some sides, whose nodes follow the particles; None for none.
-    feet : the continua below the free-field columns, whose nodes come last.
+    slots : the slots in which kernels hold its particles; None: in their order. outside : the continuum on some sides,
+    whose nodes follow the particles; None for none. feet : those below the free-field columns, whose nodes come last.
     between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
     ground_waves : the motion of the ground without the body, which the continuum does not include; None without any.
     surface : points (2, k) m on its free surface at rest; None where it is level at the top of the ground.
     all_intact : whether no bond breaks, as in the free-field column of a body with intact zones, settled by itself.
-    faces : of its joints.
+    faces : of its joints. groups : the ground of its disks, of which some are in groups; None without groups.
     """
 
     case: DiskCase
@@ -123,6 +120,7 @@ class DiskBody(Scene):
     surface: np.ndarray | None = None
     all_intact: bool = False
     faces: tuple[Faces, ...] = ()
+    groups: GroupedGround | None = None
 
     kind = "disks"
     energy_unit = "J/m"
@@ -157,6 +155,11 @@ class DiskBody(Scene):
         """Of a free field the side and the surface of its ground."""
         ground = self.case, self.seams, self.outside, self.monitored[name]
         return free_field_attributes(*ground) if name.endswith(FREE_FIELD) else {}
+
+    @property
+    def inside(self) -> PackedMaterial:
+        """The ground of the disks of the body, with its groups, by which their contacts are."""
+        return self.groups or self.ground
 
     @property
     def disk_count(self) -> int:
@@ -253,9 +256,8 @@ class DiskBody(Scene):
         count = self.disk_count
         twin, other = self.seams[0].twin, self.seams[-1].twin
         if len(self.seams) > 1:
-            own = np.arange(count)
             beyond = self.assembly.positions[:, 0] > self.case.middle
-            twin = np.where(((beyond & (other != own)) | (twin == own)), other, twin)
+            twin = np.where(((beyond & (other != np.arange(count))) | (twin == np.arange(count))), other, twin)
         return np.concatenate([twin, np.arange(count, self.count)])
 
     @property
@@ -309,7 +311,7 @@ class DiskBody(Scene):
     @cached_property
     def bonded(self) -> np.ndarray:
         """Whether each disk (m,) has a bond as built."""
-        constants = brick_constants(self.ground, gaps_close=False, locked_in=0.0)
+        constants = brick_constants(self.inside, gaps_close=False, locked_in=0.0)
         bonds = self.assembly.pairs[self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0]
         return np.bincount(bonds.ravel(), minlength=self.disk_count) > 0
 

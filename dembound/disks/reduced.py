@@ -194,11 +194,11 @@ def identical_row(scene: DiskScene) -> OneRow | None:
     """One of the identical rows of a scene, along the axis with fewer rows if both have some; None if it has none.
 
     Only under the elastic law, without a load factor (the least of all contacts), a static stage, a free-field column,
-    a continuum and joints.
+    a continuum, joints and groups.
     """
     case = scene.case
     apart = scene.has_history or case.output.load_factor or case.static is not None
-    if apart or scene.outside is not None or scene.seams or scene.faces:
+    if apart or scene.outside is not None or scene.seams or scene.faces or scene.groups:
         return None
     copies = scene.assembly.copies
     axes = (0,) if scene.ground.is_layered else np.argsort(copies, kind="stable").tolist()

@@ -32,6 +32,7 @@ from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.faces.found import with_joints
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
+from dembound.disks.material.grouped import GroupedGround
 from dembound.disks.material.layered import LayeredGround, layered
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.unlike import UnlikeGround
@@ -88,8 +89,7 @@ class DiskScene(DiskBody):
     @property
     def borne(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
         """Disks (k,) with springs on relative motion by side, and its shares (k, 2) of their forces."""
-        springs = self.bearing
-        if springs is None:
+        if (springs := self.bearing) is None:
             return {}
         found = {}
         for side, own in self._bearing_by_side.items():
@@ -115,8 +115,8 @@ class DiskScene(DiskBody):
 
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
-        contacts = plain_contacts(self.ground, self.assembly, self.layout.slot)
-        return particle_stress(self, contacts, displacement, REFERENCE)
+        pairs = plain_contacts(self.inside, self.assembly, self.layout.slot)
+        return particle_stress(self, pairs, displacement, REFERENCE)
 
     @property
     def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
@@ -171,8 +171,7 @@ class DiskScene(DiskBody):
 def build(case: DiskCase) -> DiskScene:
     """Build the scene of a case: pack, tile, make holes and add supports.
 
-    Raises PackingError when the brick cannot be made or no particle remains, CaseError when no particle of a side
-    remains, or when a run needs more RAM than there is.
+    Raises PackingError without a brick or particles, CaseError for a side without any, and for a lack of RAM.
     """
     must_fit_here(case)
     ground = ground_of(case)
@@ -186,11 +185,12 @@ def build(case: DiskCase) -> DiskScene:
     if first:
         body, edges, _ = hollowed(case, ground.brick, body, edges, first, case.floors_of(first))
     require_held(case, edges)
-    scene = _scene(case, ground, body, edges, case.floors_of(first))
+    groups = GroupedGround.of(ground, case, body) if case.group else None
+    scene = _scene(case, ground, body, edges, case.floors_of(first), groups)
     if not later:
         return scene
     body, edges, kept = hollowed(case, ground.brick, body, edges, later, case.floors)
-    after = _scene(case, ground, body, edges, case.floors)
+    after = _scene(case, ground, body, edges, case.floors, groups)
     columns = [_same_in(scene, after, seam) for seam in after.seams]
     return replace(after, before=scene, kept=np.concatenate([*columns, scene.column_count + kept]))
 
@@ -214,10 +214,11 @@ def _scene(
     assembly: Assembly,
     edges: Mapping[str, Edge],
     floors: Mapping[str, Floor] = NO_FLOORS,
+    groups: GroupedGround | None = None,
 ) -> DiskScene:
     """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides.
 
-    floors : left by its holes at left and right sides.
+    floors : left by its holes at left and right sides. groups : the ground of its disks, see `DiskBody`.
     """
     body, beyond = assembly, case.outside_sides
     seams: tuple[Seam, ...] = ()
@@ -238,18 +239,18 @@ def _scene(
     count, surface = len(assembly.radii), case.surface
     assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
     assembly, seams = with_layers(ground, assembly, seams)
+    assembly = assembly if groups is None else groups.typed(assembly, columns_end(seams))
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(
         assembly,
-        ground.stepped,
+        (groups or ground).stepped,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
         levels_by_part(case, ground, assembly, seams, surface),
     )
     outside, layout = None, slots
     if outline is not None:
-        twins = tuple(seam.twin for seam in seams)
-        outside = surroundings_of(around, body, outline, slots, columns_end(seams), twins)
+        outside = surroundings_of(around, body, outline, slots, columns_end(seams), tuple(each.twin for each in seams))
         layout = outside.laid_out(layout)
     feet: list[Surroundings] = []
     for seam in seams if "bottom" in beyond else ():
@@ -273,6 +274,7 @@ def _scene(
         ground_waves=waves,
         surface=surface,
         faces=faces,
+        groups=groups,
     )
     return with_waves(scene, case.wave)
 
@@ -294,17 +296,15 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
         for side, table in case.boundary.items()
         if side not in sides and not table.is_outside
     }
-    static = case.static
-    if static is not None:
+    if (static := case.static) is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
         if columns_stand_fast(case, scene.seams):
             ends = {side: standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
-    without: dict[str, Any] = {"load": everywhere, "hole": (), "wall": (), "joint": (), "monitor": ()}
+    without: dict[str, Any] = {"load": everywhere, "group": (), "hole": (), "wall": (), "joint": (), "monitor": ()}
     alone = replace(case, boundary=sides | upright, static=static, ground=case.ground.level(), **without)
-    standing = Standing((), seam.top)
-    column = standing.tiled(brick, case.column_rows[1], case.box[:2])
+    column = Standing((), seam.top).tiled(brick, case.column_rows[1], case.box[:2])
     alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
     surface = None if scene.surface is None else level_at(scene.surface, seam)
     intact = scene.intact is not None and bool(scene.intact[seam.disks].all())

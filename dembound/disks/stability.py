@@ -65,8 +65,8 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     """
     bounds = [(_largest_eigenvalue(scene), 0.0)]
     if scene.has_history:
-        zones, dashed = _zones_of(scene.ground), viscous and scene.case.material.has_dashpots
-        opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.ground.materials)
+        zones, dashed = _zones_of(scene.inside), viscous and scene.case.material.has_dashpots
+        opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.inside.materials)
         if dashed and scene.case.damps_bonds:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
         elif dashed:
@@ -97,7 +97,7 @@ def _largest_viscosity(scene: DiskScene) -> float:
     material, count = scene.case.material, scene.disk_count
     tables = [
         contact_rows(
-            scene.assembly.part(disks), scene.ground, disks.start, partial(brick_dashpots, scene.ground, material)
+            scene.assembly.part(disks), scene.inside, disks.start, partial(brick_dashpots, scene.inside, material)
         )
         for disks in scene.parts.values()
     ]
@@ -116,7 +116,7 @@ def _partly_broken(scene: DiskScene, largest: float) -> list[tuple[float, float]
     largest : eigenvalue with all bonds. In place of the springs k + k̄ of a contact with a bond stand k + 2c/Δt without:
     no matrix is larger than that of all bonds times the largest ratio of both, max k/(k + k̄) + 2/Δt max c/(k + k̄).
     """
-    ground, shares, rates = scene.ground, [0.0], [0.0]
+    ground, shares, rates = scene.inside, [0.0], [0.0]
     radii = ground.brick.radii[ground.brick.pairs].T
     for pairing in ground.pairings:
         constants = ground.pair_constants((radii[0], radii[1]), ground.brick.vectors, pairing, gaps_close=False)
@@ -242,7 +242,7 @@ def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
     disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls.
     """
     stiffer, slower = 0.0, 0.0
-    for ground in _zones_of(scene.ground):
+    for ground in _zones_of(scene.inside):
         (normal, shear), mass = _loose_springs(ground), float(ground.mass.min())
         for wall in scene.case.wall:
             kn = wall.kn or 2.0 * ground.moduli.emod

@@ -112,7 +112,8 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     across, up = case.packing.copies
     disks = len(ground_of(case).brick.radii)
     most = max(1, PARTICLES // disks)
-    if across * up <= most or (case.layer and across == 1):
+    stiff = any(group.is_stiff for group in case.group)
+    if across * up <= most or (case.layer and across == 1) or stiff:
         return case, ["the whole scene"]
     fewer_up = up if case.layer else int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
     fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
@@ -126,6 +127,7 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
         case,
         boundary=stiffest,
         packing=case.packing.with_copies(*fewer),
+        group=(),
         hole=(),
         joint=(),
         ground=case.ground.level(),

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Literal, NamedTuple, Self
 
 import numpy as np
+from pydantic import model_validator
 
 from dembound.holes.outline import Outline
 from dembound.places import includes
@@ -31,12 +32,23 @@ class Hole(Table, ABC):
 
     type: str
     name: FileName = quantity(..., help="name in loads and messages")
-    stage: Literal["before", "after"] = quantity(
+    stage: Literal["before", "after", "run"] = quantity(
         "before",
-        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes on',
+        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes '
+        'on; "run": excavated at a time of the run',
     )
-
+    time: float | None = quantity(
+        None, unit="s", help='time of the run at which its disks vanish, with stage = "run"', ge=0.0
+    )
     keep: Literal["outside", "inside"] = quantity("outside", help="which particles remain")
+
+    @model_validator(mode="after")
+    def _in_time(self) -> Self:
+        if (self.stage == "run") != (self.time is not None):
+            raise ValueError(
+                'time: is missing, with stage = "run"' if self.time is None else 'time: needs stage = "run"'
+            )
+        return self
 
     @property
     def is_shape(self) -> bool:

@@ -1,6 +1,7 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from dembound.holes import Hole
 from dembound.plot.disks import ContinuumCells, Window, read_continuum, read_holes
-from dembound.plot.lines_of_ground import LayersOfSide, faults_in, foot_in, layers_in
+from dembound.plot.lines_of_ground import LayersOfSide, areas_in, faults_in, foot_in, layers_in
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import (
     laws_in_words,
@@ -43,7 +44,7 @@ class Disks:
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
     ground; foot, the height (m) below which motion of the continuum is without the free field; walls and faults:
-    points (k, 2) m of each wall and joint.
+    points (k, 2) m of each wall and joint; areas, corners (k, 2) m of groups, and of later holes, by name.
     """
 
     positions: np.ndarray
@@ -59,6 +60,7 @@ class Disks:
     foot: float | None = None
     walls: tuple[np.ndarray, ...] = ()
     faults: tuple[np.ndarray, ...] = ()
+    areas: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @cached_property
     def own_window(self) -> Window:
@@ -124,7 +126,7 @@ class Field:
     either sign; the name and unit of the field; the meaning of its sign, if the name does not give it; beyond (k, m),
     values of the nodes of a continuum, None if it has none; moved (k, n, 2) and moved_beyond (k, m, 2) m,
     displacements with which disks and nodes are drawn, None for none; walls (p, 2) m as they are drawn, None where
-    they are at the start; cut, whether values exceed the limits.
+    they are at the start; cut, whether values exceed the limits; gone (k, n) bool, disks that have vanished.
     """
 
     captions: list[str]
@@ -139,6 +141,7 @@ class Field:
     moved_beyond: np.ndarray | None = None
     walls: tuple[np.ndarray, ...] | None = None
     cut: bool = False
+    gone: np.ndarray | None = None
 
     @property
     def extend(self) -> Literal["neither", "max", "both"]:
@@ -177,4 +180,5 @@ def read_disks(file: h5py.File) -> Disks:
         foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
         faults=faults_in(file),
+        areas=areas_in(file),
     )

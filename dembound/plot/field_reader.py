@@ -10,6 +10,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.plot.disks import GROUP, is_scattered
 from dembound.plot.field import FORCES, OF_THE_RUN, Field, FieldName
+from dembound.plot.lines_of_ground import gone_at
 from dembound.plot.places import crack_lines, displacement_of, exaggeration
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import COMPONENTS, cracks_until, snapshot_of, snapshots_of, walls_at
@@ -58,7 +59,7 @@ class FieldInRecord:
         times = [float(group.attrs["time"]) for group in chosen]
         file, last = chosen[0].file, times[-1]
         moves = [displacement_of(group) for group in chosen]
-        is_moved = self.factor != 0.0
+        is_moved, ends = self.factor != 0.0, gone_at(file)
         beyond = None if not is_moved or self.beyond is None else f"{GROUP}/displacement"
         return Field(
             captions=[f"t = {time:.3g} s" for time in times],
@@ -75,6 +76,7 @@ class FieldInRecord:
             moved_beyond=None if beyond is None else self.factor * np.array([group[beyond][:, :2] for group in chosen]),
             walls=tuple(walls_at(file, last, self.factor).values()) or None if is_moved else None,
             cut=self.cut,
+            gone=None if ends is None else np.array(times)[:, None] > ends,
         )
 
 

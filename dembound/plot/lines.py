@@ -1,4 +1,4 @@
-"""Lines over the disks of a scene: between layers, and along walls and joints."""
+"""Lines over the disks of a scene: between layers, along walls and joints, and round groups."""
 
 import math
 from collections.abc import Sequence
@@ -32,6 +32,19 @@ def mark_faults(panel: Axes, disks: Disks) -> None:
         looks: dict[str, Any] = {"zorder": ABOVE_DISKS, "solid_capstyle": "round"}
         panel.plot(*points.T, color="white", linewidth=2.2, scalex=False, scaley=False, **looks)
         panel.plot(*points.T, color="black", linewidth=1.2, scalex=False, scaley=False, **looks)
+
+
+def mark_areas(panel: Axes, disks: Disks) -> None:
+    """A broken line round every group, and every hole made during the run, with its name."""
+    for name, points in disks.areas.items():
+        closed = np.vstack([points, points[:1]])
+        looks: dict[str, Any] = {"linewidth": 0.9, "zorder": ABOVE_DISKS, "scalex": False, "scaley": False}
+        panel.plot(*closed.T, color="white", **looks)
+        panel.plot(*closed.T, color="black", linestyle=(0, (4, 3)), **looks)
+        top = points[np.lexsort((points[:, 0], -points[:, 1].round(9)))[0]]
+        place: dict[str, Any] = {"xytext": (3.0, -3.0), "textcoords": "offset points", "va": "top"}
+        plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+        panel.annotate(name, tuple(top), fontsize=7, bbox=plate, zorder=ABOVE_CRACKS, annotation_clip=True, **place)
 
 
 def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:

@@ -1,4 +1,4 @@
-"""Lines of the ground in a record: layers of each side, joints, and the foot of its columns."""
+"""Lines of the ground in a record: layers of each side, joints, groups, later holes, and the foot of its columns."""
 
 import math
 from collections.abc import Iterator
@@ -9,8 +9,11 @@ import numpy as np
 
 from dembound.casefile.reader import parsed
 from dembound.errors import CaseError
-from dembound.plot.disks import GROUP, is_scattered
+from dembound.plot.disks import GROUP, is_scattered, read_holes
 from dembound.results.reader import text_of
+
+POINTS = 257
+"""Points at which the outline of a hole is drawn: every corner of up to eight even sides."""
 
 
 class LayersOfSide(NamedTuple):
@@ -42,6 +45,36 @@ def faults_in(file: h5py.File) -> tuple[np.ndarray, ...]:
         return tuple(np.array(joint["points"], dtype=float).reshape(-1, 2) for joint in joints)
     except (CaseError, KeyError, TypeError, ValueError):
         return ()
+
+
+def areas_in(file: h5py.File) -> dict[str, np.ndarray]:
+    """Corners (k, 2) m of the groups, and points on the holes made during the run, by name; none without a case."""
+    areas = dict[str, np.ndarray]()
+    try:
+        for group in parsed(text_of(file.attrs.get("case", ""))).get("group", []):
+            if "region" in group:
+                x0, y0, x1, y1 = group["region"]
+                group["points"] = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+            areas[str(group["name"])] = np.array(group["points"], dtype=float).reshape(-1, 2)
+    except (CaseError, KeyError, TypeError, ValueError):
+        return {}
+    for hole in read_holes(file):
+        if hole.stage == "run" and hole.outline is not None:
+            areas[hole.name] = hole.outline.at(np.linspace(0.0, hole.outline.period, POINTS))
+    return areas
+
+
+def gone_at(file: h5py.File) -> np.ndarray | None:
+    """Time (n,) s at which each disk of a record vanishes, infinite for most; None if none does."""
+    holes = [hole for hole in read_holes(file) if hole.stage == "run"]
+    if not holes:
+        return None
+    positions = file["particles/position"][:]
+    time, span = np.full(len(positions), np.inf), float(np.ptp(positions, axis=0).max())
+    for hole in holes:
+        time[hole.takes(positions, span)] = hole.time
+    time[: int(file.attrs.get("column", 0))] = np.inf
+    return time
 
 
 def foot_in(file: h5py.File) -> float | None:

@@ -23,6 +23,7 @@ from dembound.plot.lines import (
     ABOVE_DISKS,
     LETTER_WIDTH,
     NAME_HEIGHT,
+    mark_areas,
     mark_faults,
     mark_layers,
     mark_walls,
@@ -213,7 +214,9 @@ def draw_panel(
     numbered : labels have numbers of cracks.
     """
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
-    colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale, disks.holes)
+    there = slice(None) if shown.gone is None else ~shown.gone[index]
+    drawn = positions[there], disks.radii[there], shown.values[index][there]
+    colours = draw_field(panel, window, *drawn, shown.limits, scale, disks.holes)
     covered = isinstance(colours, AxesImage) and shown.moved is None  # cells of the image reach into holes
     draw_outlines(panel, disks.holes, disks.own_window, 2.0 * float(disks.radii.mean()), filled=covered)
     if disks.continuum is not None:
@@ -230,6 +233,7 @@ def draw_panel(
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
     if shown.moved is None:
         mark_faults(panel, disks)
+    mark_areas(panel, disks)
     _mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi

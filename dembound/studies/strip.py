@@ -96,6 +96,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     material = case.material.model_copy(update={"law": linear_law(case.material.law)})
     left_out = {
         **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
+        "no groups": bool(case.group),
         "no holes": bool(case.holes),
         "no static stage": given.static is not None,
         "no walls": bool(case.wall),
@@ -107,6 +108,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
         boundary=boundary,
         material=material,
         static=None,
+        group=(),
         hole=(),
         wall=(),
         joint=(),

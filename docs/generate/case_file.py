@@ -14,6 +14,7 @@ from dembound.boundaries import Boundary
 from dembound.casefile.bar.bar import Bar, BarRange
 from dembound.casefile.bar.model import BarLoad, BarMonitor, BarRun
 from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.group import Group
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable
@@ -88,6 +89,7 @@ DISKS = (
         guide="tasks/cracks",
     ),
     Part("`[[layer]]`", (Layer,), within=MATERIAL, guide="tasks/layers"),
+    Part("`[[group]]`", (Group,), within=MATERIAL, guide="tasks/breaking_ground"),
     Part("`[damping]`", (Damping,), guide="tasks/damping"),
     Part("`[motion]`", (Motion,)),
     Part("`[reduce]`", (Reduce,), guide="evidence/reductions"),

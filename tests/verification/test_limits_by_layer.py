@@ -47,7 +47,7 @@ def run(lab, monkeypatch) -> Callable[..., Simulation]:
             below, on_top = materials
             friction = np.where(heights > JOINT, on_top.fric, below.fric)
             layers = limits_between([(below, on_top), (on_top, on_top)], types), friction, 0.0 * friction
-        monkeypatch.setattr(scene_parts, "_layers", lambda *_: layers)
+        monkeypatch.setattr(scene_parts, "layers_of", lambda *_: layers)
         simulation = Simulation(replace(scene, assembly=assembly), choose_step(scene)[0])
         (contacts,) = simulation.system.contacts.values()
         contacts.cells = contacts.cells._replace(reach=0.0)  # pairs are searched for as if any two disks might meet

@@ -167,6 +167,7 @@ class Steps:
                 boundary=sides,
                 outside=outside or self.case.outside,
                 ground=Ground(),
+                group=(),
                 hole=(),
                 wall=(),
                 joint=(),

@@ -78,9 +78,10 @@ def _require_linear(case: DiskCase) -> None:
     require_linear(case.material.law)
     if case.wall:
         raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)
-    if case.joint:
-        said = "joint: errors of motion beside joints are not predicted; compare runs with smaller disks"
-        raise CaseError([said], case.name)
+    for key in ("joint", "group"):
+        if getattr(case, key):
+            said = f"{key}: errors of motion beside {key}s are not predicted; compare runs with smaller disks"
+            raise CaseError([said], case.name)
 
 
 def require_one_ground(case: DiskCase) -> None:

@@ -12,6 +12,7 @@ from dembound.boundaries.free import Free
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.surface import air_above, points_in_file, require_surface
 from dembound.casefile.messages import choices, corners, numbered, show
+from dembound.casefile.types import LAWS
 from dembound.holes.hole import Floor, Hole, floor_beside
 from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Extent, Packing
@@ -158,7 +159,7 @@ def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
     if not (packing and ground):
         return {}
     above = ground.above(packing.box)
-    holes = [hole for hole in (*tables["hole"], above) if hole]
+    holes = [hole for hole in (*tables["hole"], above) if hole and hole.stage != "run"]
     return lowered(floors(holes, packing, ground, boundary), boundary)
 
 
@@ -221,6 +222,8 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
             yield from _shapes(place, hole, tables["boundary"])
         if hole.stage == "after" and not has_static:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
+        if hole.stage == "run":
+            yield from _in_run(place, hole, tables)
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables)
     if tables["packing"] and tables["ground"] and (above := tables["ground"].above(tables["packing"].box)):
@@ -233,12 +236,25 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
 
 def _shapes(place: str, hole: Hole, boundary: Mapping[str, Any]) -> Iterator[str]:
     """The shape of a sample that is cut later, or beside which the ground goes on."""
-    if hole.stage == "after":
-        yield f'{place}.stage: is "after", but a sample is cut before anything else; leave it out'
+    if hole.stage != "before":
+        yield f'{place}.stage: is "{hole.stage}", but a sample is cut before anything else; leave it out'
     for side, table in boundary.items():
         if table and (table.is_periodic or table.is_outside or table.needs_column or table.half_cells):
             kind = "half_mass" if table.half_cells else f'"{table.type}"'
             yield f'{place}.keep: is "inside", so the body ends at this shape; boundary.{side} must not be {kind}'
+
+
+def _in_run(place: str, hole: Hole, tables: Mapping[str, Any]) -> Iterator[str]:
+    """What an excavation during the run does not go with; a table that is invalid on its own is None."""
+    if (material := tables["material"]) and not (LAWS[material.law].has_history and LAWS[material.law].starts_elastic):
+        yield f'{place}.stage: is "run", which needs contacts that open; give material.law = "linearpbond"'
+    if any(table and table.quality_factor is not None for table in (material, *tables["layer"])):
+        yield f'{place}.stage: is "run", which is for undamped ground; leave quality_factor out'
+    for where, load in numbered("load", tables["load"]):
+        if load.hole == hole.name:
+            yield f"{where}.hole: {show(hole.name)} is made during the run; a pressure acts in a hole made before"
+        elif load.wave is not None and load.is_everywhere:
+            yield f'{where}.wave: acts on all disks, some of which vanish; not known with {place}.stage = "run"'
 
 
 def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:

@@ -80,7 +80,7 @@ def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
         yield f"{place}: is for ground of one material; leave out [[layer]]"
     if any(table and table.quality_factor is not None for table in (material, *(tables["layer"] or ()))):
         yield f"{place}: is for undamped ground; leave material.quality_factor out"
-    if any(hole and hole.stage == "after" for hole in tables["hole"]):
+    if any(hole and hole.stage != "before" for hole in tables["hole"]):
         yield f'{place}: is for ground without an excavation; let holes have stage = "before"'
     if packing := tables["packing"]:
         box, diameter = packing.box, 2.0 * packing.radius

@@ -22,7 +22,7 @@ _WITHOUT = dict(zip(PAIRS, ((), ("along",), ("plane",)), strict=True))
 """Keys of `TARGET_KEYS` that each pair of targets does not have."""
 
 
-def _as_in_material(key: str) -> Any:
+def as_in_material(key: str) -> Any:
     """The field of a layer for a key of [material], with its meaning and limits; absent: as there."""
     field, described = Material.model_fields[key], Material.described(key)
     limits = {name: value for each in field.metadata for name, value in asdict(each).items()}
@@ -30,7 +30,29 @@ def _as_in_material(key: str) -> Any:
     return quantity(None, unit=described["unit"], means=described["means"], help=said, **limits)
 
 
-class Layer(Table):
+class Differing(Table):
+    """A part of the ground that has some keys of [material] of its own."""
+
+    name: str | None
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """The keys of [material] that it gives."""
+        return {key: value for key, value in self.given().items() if key in Material.model_fields}
+
+    def merged(self, material: Material) -> Material:
+        """Its material: that beside it with the keys that it gives. Raises ValidationError for mistakes in it."""
+        own, gone = self.own, set[str]()
+        if not own.keys().isdisjoint(STIFFNESS_KEYS):
+            gone |= {*STIFFNESS_KEYS, *(() if "p_wave_speed" in own else ("match",))}
+            pair = next((pair for pair in PAIRS if own.keys() >= {*pair}), None)
+            gone |= {*RATIO_KEYS, "match", *_WITHOUT[pair]} if pair else {*TARGET_KEYS}
+        if not own.keys().isdisjoint(MODULI_KEYS):
+            gone |= {*WAVE_SPEED_KEYS}
+        return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)
+
+
+class Layer(Differing):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
     Absent keys are those of [material]. A layer that gives one of the keys for stiffness (wave speeds, targets, `emod`
@@ -45,26 +67,26 @@ class Layer(Table):
     side: Literal["left", "right"] | None = quantity(
         None, unit="1", help="the side of ground.meet at which it is; absent: at both"
     )
-    density: float | None = _as_in_material("density")
-    p_wave_speed: float | None = _as_in_material("p_wave_speed")
-    s_wave_speed: float | None = _as_in_material("s_wave_speed")
-    young: float | None = _as_in_material("young")
-    poisson: float | None = _as_in_material("poisson")
-    bulk: float | None = _as_in_material("bulk")
-    shear: float | None = _as_in_material("shear")
-    plane: Literal["strain", "stress"] | None = _as_in_material("plane")
-    along: Literal["isotropic", "x", "y"] | None = _as_in_material("along")
-    emod: float | None = _as_in_material("emod")
-    pb_emod: float | None = _as_in_material("pb_emod")
-    kratio: float | None = _as_in_material("kratio")
-    pb_kratio: float | None = _as_in_material("pb_kratio")
-    fric: float | None = _as_in_material("fric")
-    rr_fric: float | None = _as_in_material("rr_fric")
-    pb_ten: float | None = _as_in_material("pb_ten")
-    pb_coh: float | None = _as_in_material("pb_coh")
-    pb_fa: float | None = _as_in_material("pb_fa")
-    pb_mcf: float | None = _as_in_material("pb_mcf")
-    quality_factor: float | None = _as_in_material("quality_factor")
+    density: float | None = as_in_material("density")
+    p_wave_speed: float | None = as_in_material("p_wave_speed")
+    s_wave_speed: float | None = as_in_material("s_wave_speed")
+    young: float | None = as_in_material("young")
+    poisson: float | None = as_in_material("poisson")
+    bulk: float | None = as_in_material("bulk")
+    shear: float | None = as_in_material("shear")
+    plane: Literal["strain", "stress"] | None = as_in_material("plane")
+    along: Literal["isotropic", "x", "y"] | None = as_in_material("along")
+    emod: float | None = as_in_material("emod")
+    pb_emod: float | None = as_in_material("pb_emod")
+    kratio: float | None = as_in_material("kratio")
+    pb_kratio: float | None = as_in_material("pb_kratio")
+    fric: float | None = as_in_material("fric")
+    rr_fric: float | None = as_in_material("rr_fric")
+    pb_ten: float | None = as_in_material("pb_ten")
+    pb_coh: float | None = as_in_material("pb_coh")
+    pb_fa: float | None = as_in_material("pb_fa")
+    pb_mcf: float | None = as_in_material("pb_mcf")
+    quality_factor: float | None = as_in_material("quality_factor")
     k0: float | None = quantity(
         None,
         unit="1",
@@ -79,22 +101,6 @@ class Layer(Table):
         if self.thickness is not None and self.bottom is not None:
             raise ValueError("bottom: is not allowed together with thickness; give one of them")
         return self
-
-    @property
-    def own(self) -> dict[str, Any]:
-        """The keys of [material] that it gives."""
-        return {key: value for key, value in self.given().items() if key in Material.model_fields}
-
-    def merged(self, material: Material) -> Material:
-        """Its material: a case's [material] with the keys that it gives. Raises ValidationError for mistakes in it."""
-        own, gone = self.own, set[str]()
-        if not own.keys().isdisjoint(STIFFNESS_KEYS):
-            gone |= {*STIFFNESS_KEYS, *(() if "p_wave_speed" in own else ("match",))}
-            pair = next((pair for pair in PAIRS if own.keys() >= {*pair}), None)
-            gone |= {*RATIO_KEYS, "match", *_WITHOUT[pair]} if pair else {*TARGET_KEYS}
-        if not own.keys().isdisjoint(MODULI_KEYS):
-            gone |= {*WAVE_SPEED_KEYS}
-        return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)
 
 
 def completed_by_layers(tables: Mapping[str, Any]) -> tuple[Mapping[str, Any], list[str]]:
@@ -148,7 +154,7 @@ def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     layers, material = tables["layer"], tables["material"]
     if material:
         for place, layer in numbered("layer", layers):
-            yield from _problems_of_material(place, layer, material)
+            yield from problems_of_material(place, layer, material)
     if not layers or None in layers:
         return
     first = dict[str, int]()
@@ -168,10 +174,10 @@ def layer_problems(tables: Mapping[str, Any]) -> Iterator[str]:
         yield from dict.fromkeys(lines)
 
 
-def _problems_of_material(place: str, layer: Layer, material: Material) -> Iterator[str]:
-    """Mistakes of [material] with the keys of a layer, at the layer."""
+def problems_of_material(place: str, part: Differing, material: Material) -> Iterator[str]:
+    """Mistakes of [material] with the keys of a part of the ground, at the part."""
     try:
-        layer.merged(material)
+        part.merged(material)
     except ValidationError as error:
         for line in str(error.errors()[0]["ctx"]["error"]).splitlines():
             yield f"{place}.{line}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.boundaries.viscous import Bearing
 from dembound.casefile.disks.ground import Ground, floors, lowered
+from dembound.casefile.disks.group import Group
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
@@ -53,7 +54,7 @@ class DiskCase(Case):
     ----------
     run, ground, packing, material, damping, motion, outside, reduce : the tables of these names.
     static, incident : the tables of these names; None: no static stage, no wave at an angle.
-    layer : from the surface down; none: the ground is uniform. hole, wall, joint : in the order of the file.
+    layer : from the surface down; none: the ground is uniform. group, hole, wall, joint : in the order of the file.
     """
 
     run: DiskRun
@@ -67,6 +68,7 @@ class DiskCase(Case):
     incident: IncidentWave | None = None
     static: Static | None = None
     layer: tuple[Layer, ...] = ()
+    group: tuple[Group, ...] = ()
     hole: tuple[Hole, ...] = ()
     wall: tuple[Wall, ...] = ()
     joint: tuple[Joint, ...] = ()
@@ -88,6 +90,11 @@ class DiskCase(Case):
         """The material of each layer, from the surface down: [material] with the layer's keys; without layers one."""
         return tuple(layer.merged(self.material) for layer in self.layer) or (self.material,)
 
+    @cached_property
+    def all_materials(self) -> tuple[Material, ...]:
+        """The materials of the layers, and those that each group alone makes of them."""
+        return (*self.materials, *(group.merged(each) for group in self.group for each in self.materials))
+
     @property
     def is_damped(self) -> bool:
         """Whether the ground, or a layer of it, has a quality factor."""
@@ -107,18 +114,18 @@ class DiskCase(Case):
     @property
     def damps_bonds(self) -> bool:
         """Whether dashpots of contacts also act beside intact bonds."""
-        return self.material.damps_bonds and not (self.material.dp_on is None and can_break(self.materials))
+        return self.material.damps_bonds and not (self.material.dp_on is None and can_break(self.all_materials))
 
     @property
     def dashes_at_once(self) -> bool:
         """Whether dashpots of contacts act from the start."""
-        loose = any(material.no_bonds is not None for material in self.materials)
+        loose = any(material.no_bonds is not None for material in self.all_materials)
         return self.material.has_dashpots and (self.damps_bonds or loose)
 
     @property
     def rolls(self) -> bool:
         """Whether contacts without bonds resist rolling from the start."""
-        return any(material.rolls for material in self.materials)
+        return any(material.rolls for material in self.all_materials)
 
     @property
     def joints(self) -> tuple[float, ...]:
@@ -192,15 +199,15 @@ class DiskCase(Case):
 
     @cached_property
     def holes(self) -> tuple[Hole, ...]:
-        """The holes, and the air above the surface of the ground as the last one if that is given."""
-        above = self.ground.above(self.packing.box)
-        return self.hole if above is None else (*self.hole, above)
+        """The holes before the run, and the air above the surface of the ground as the last one if that is given."""
+        above, made = self.ground.above(self.packing.box), tuple(hole for hole in self.hole if hole.stage != "run")
+        return made if above is None else (*made, above)
 
     @property
     def named_holes(self) -> Iterator[tuple[str, Hole]]:
         """The holes with their places in messages."""
-        yield from numbered("hole", self.hole)
-        yield from (("ground.surface", hole) for hole in self.holes[len(self.hole) :])
+        yield from ((place, hole) for place, hole in numbered("hole", self.hole) if hole.stage != "run")
+        yield from (("ground.surface", hole) for hole in self.holes if hole not in self.hole)
 
     @property
     def files(self) -> dict[str, str]:
@@ -249,7 +256,7 @@ class DiskCase(Case):
     @cached_property
     def intact(self) -> dict[str, int]:
         """Number of disks from each side, counted by bonds, whose bonds do not break; see `intact_depths`."""
-        return intact_depths(self.materials, self.boundary, self.static)
+        return intact_depths(self.all_materials, self.boundary, self.static)
 
     @property
     def bearing(self) -> dict[str, Bearing]:

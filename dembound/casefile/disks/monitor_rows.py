@@ -129,7 +129,8 @@ def _row(row: MonitorTable, tables: Mapping[str, Any]) -> Iterator[Monitor | str
     assert row.spacing is not None
     along = np.round(first + row.spacing * np.arange(count), DIGITS)
     air = ground.above(packing.box)
-    holes = [*tables["hole"], *([] if air is None else [air])]
+    made = [hole for hole in tables["hole"] if hole.stage != "run"]
+    holes = [*made, *([] if air is None else [air])]
     heights = np.round(_surface(along, holes, packing, ground), DIGITS)
     if np.isnan(heights).any():
         yield f"along: there is no ground at x = {along[np.isnan(heights)][0]:g} m; give other from and to"

@@ -9,6 +9,7 @@ from pydantic import TypeAdapter
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.platen import beside_disks
 from dembound.casefile.disks.ground import Ground, ground_problems, hole_problems, lowered_in, lowered_problems, reach
+from dembound.casefile.disks.group import Group, group_problems
 from dembound.casefile.disks.incident import (
     Damping,
     IncidentWave,
@@ -69,11 +70,12 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         if tables["material"]:
             yield from _nothing_to_match(tables["material"], tables["motion"])
     if tables["packing"]:
-        for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+        for place, table in _of_ground(tables):
             yield from _nothing_to_pack_with(place, table, tables["packing"])
     yield from monitor_problems(tables)
     yield from pressed_side_problems(numbered("load", tables["load"]), tables)
     yield from layer_problems(tables)
+    yield from group_problems(tables)
     ground, packing = tables["ground"], tables["packing"]
     if ground and packing:
         if ground.points:
@@ -96,11 +98,11 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
             tables["output"], tables["material"], tables["load"], "static" in given, damped=is_damped(tables)
         )
         if not (LAWS[tables["material"].law].has_history or tables["output"].load_factor):
-            for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+            for place, table in _of_ground(tables):
                 yield from _no_strength(place, table)
     if tables["material"] and not LAWS[tables["material"].law].rolls:
         allowed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.rolls)
-        for place, table in (("material", tables["material"]), *numbered("layer", tables["layer"])):
+        for place, table in _of_ground(tables):
             if ROLLING_KEY in table.model_fields_set:
                 yield f"{place}.{ROLLING_KEY}: is only allowed with law = {allowed}"
     if tables["static"]:
@@ -110,8 +112,26 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield from static_problems(*settling, has_column=beside, has_walls=bool(tables["wall"]))
     if tables["run"]:
         yield from run_problems(tables)
+        yield from _too_late(tables, tables["run"].duration)
     if tables["output"]:
         yield from never_estimated(tables)
+
+
+def _of_ground(tables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The tables with keys of [material], by their places; [material] is None if it is invalid."""
+    yield "material", tables["material"]
+    for key in ("layer", "group"):
+        yield from numbered(key, tables[key])
+
+
+def _too_late(tables: Mapping[str, Any], duration: float) -> Iterator[str]:
+    """Times after the end of a run of a duration (s)."""
+    times = [(f"{place}.time", each.time) for key in ("group", "hole") for place, each in numbered(key, tables[key])]
+    for side, table in (tables["static"].boundary if tables["static"] else {}).items():
+        times.append((f"static.boundary.{side}.until", getattr(table, "until", None)))
+    for place, time in times:
+        if time is not None and time > duration:
+            yield f"{place}: is {time:g} s, after the end of the run at {duration:g} s"
 
 
 def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
@@ -122,7 +142,7 @@ def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[s
                 yield f"{place}.{load.key}: acts along {'xy'[axis]}, which motion.held holds for every particle"
 
 
-def _nothing_to_pack_with(place: str, table: Material | Layer | None, packing: Packing) -> Iterator[str]:
+def _nothing_to_pack_with(place: str, table: Material | Layer | Group | None, packing: Packing) -> Iterator[str]:
     """Contacts without stiffness in a packing that contacts under stress hold together; an invalid table is None."""
     for key in ("contact_share", "emod") if packing.packed_under_stress else ():
         if getattr(table, key, None) == 0.0:
@@ -130,7 +150,7 @@ def _nothing_to_pack_with(place: str, table: Material | Layer | None, packing: P
             yield f"{place}.{key}: is 0, but {held}; must be greater than 0"
 
 
-def _no_strength(place: str, table: Material | Layer) -> Iterator[str]:
+def _no_strength(place: str, table: Material | Layer | Group) -> Iterator[str]:
     """Strengths without effect."""
     for key in BOND_KEYS:
         if key in table.model_fields_set:
@@ -217,6 +237,7 @@ SCHEMA = Schema(
     staged={"static": (TypeAdapter(Static), TypeAdapter(StaticSide))},
     lists={
         "layer": TypeAdapter(Layer),
+        "group": TypeAdapter(Group),
         "hole": TypeAdapter(HoleTable),
         "wall": TypeAdapter(Wall),
         "joint": TypeAdapter(Joint),

@@ -22,6 +22,7 @@ from dembound.laws.law import AnyLimits, columns_of
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
 from dembound.packings.tiling import Assembly
+from dembound.pairwise import STRAIN
 
 _KEPT = ("first", "second", "contact_type", *HISTORY)
 """The arrays of the pairs, besides their forces, that saved_arrays() returns."""
@@ -131,6 +132,21 @@ class ContactList(RenewedList):
             self.bonds = self._constants = self._constants[: max(self.own_types, int(pairs.contact_type.max()) + 1)]
             self._plan = PairPlan.of(pairs.first, pairs.second, pairs.contact_type, len(self.bonds), *plan)
             self._list(pairs, history._replace(lag=None))
+
+    def take_limits(self, limits: AnyLimits, friction: np.ndarray, rolling: np.ndarray) -> None:
+        """Have other friction and strengths from now on: of types of contacts, and of particles, see `layers`."""
+        width, built = self.ground.law.width + STRAIN, self._built
+        columns = np.column_stack(columns_of(limits))
+        self.meet_with(friction, rolling)
+        pairs, history = self._all()
+        self._constants[built.contact_type, width:] = columns[self.assembly.contact_type]
+        met = pairs.contact_type >= self.own_types
+        self._constants[pairs.contact_type[met], width:] = self._limits_of_met(pairs.first[met], pairs.second[met])
+        self._list(pairs, history)
+
+    def meet_with(self, friction: np.ndarray, rolling: np.ndarray) -> None:
+        """Have other friction and resistance to rolling of particles (m,) that meet from now on."""
+        self._friction, self._rolling = friction, rolling
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n).

@@ -126,10 +126,7 @@ class RenewedList(PairList):
         both_radii, locked_in = (radii[first], radii[second]), self.locked_in
         constants = self.ground.pair_constants(both_radii, vectors, zones, bonded=False, locked_in=locked_in)
         if self._friction is not None:
-            limits = np.repeat(NO_LIMITS[:, : len(columns_of(self.limits))], len(first), axis=0)
-            limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
-            limits[:, 4:] = np.minimum(self._rolling[first], self._rolling[second])[:, None]
-            constants = np.column_stack([constants, limits])
+            constants = np.column_stack([constants, self._limits_of_met(first, second)])
         row_of = np.arange(len(constants))
         if shares:
             constants, row_of = shared_constants(constants, np.column_stack(zones), self.ground.law.width)
@@ -148,6 +145,14 @@ class RenewedList(PairList):
         for name, values in zip(self.limits._fields, limits.T, strict=False):
             getattr(self.limits, name)[row] = values
         return row[row_of]
+
+    def _limits_of_met(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        """Columns (k, 4 or 5) of the limits of contacts of particles (k,) that meet."""
+        assert self._friction is not None
+        limits = np.repeat(NO_LIMITS[:, : len(columns_of(self.limits))], len(first), axis=0)
+        limits[:, 0] = np.minimum(self._friction[first], self._friction[second])
+        limits[:, 4:] = np.minimum(self._rolling[first], self._rolling[second])[:, None]
+        return limits
 
     def _carry(self, source: np.ndarray, met: Pairs) -> None:
         """Fill the places of pairs in no row: with those listed before, by number (b,), or with met ones in turn."""

@@ -71,16 +71,20 @@ def limits_of(material: Material) -> AnyLimits:
 
 
 def limits_between(
-    pairings: Iterable[tuple[Material, Material]], types: int, of: Callable[[Material], AnyLimits] = limits_of
+    pairings: Iterable[tuple[Material, Material]],
+    types: int,
+    of: Callable[[Material], AnyLimits] = limits_of,
+    *,
+    rolls: bool = False,
 ) -> AnyLimits:
     """Columns (p,) of the limits of contacts between two materials: `types` rows for each pairing, in their order.
 
     The smaller friction, resistance to rolling and tensile strength hold, and the line of shear strength with the
-    smaller cohesion. of : `limits_of` or `strength_of`.
+    smaller cohesion. of : `limits_of` or `strength_of`. rolls : whether contacts may resist rolling at other times.
     """
     rows = [_weaker(_in_full(of(one)), _in_full(of(other))) for one, other in pairings]
     columns = np.repeat([columns_of(row) for row in rows], types, axis=0)
-    rolls = bool(columns[:, RollingLimits._fields.index("rolling")].any())
+    rolls = rolls or bool(columns[:, RollingLimits._fields.index("rolling")].any())
     return in_columns(columns if rolls else columns[:, :-1], rows[0].geometry)
 
 
@@ -92,17 +96,21 @@ def _in_full(limits: AnyLimits) -> RollingLimits:
 
 
 def ground_limits(
-    ground: PackedMaterial, materials: Sequence[Material], of: Callable[[Material], AnyLimits] = limits_of
+    ground: PackedMaterial,
+    materials: Sequence[Material],
+    of: Callable[[Material], AnyLimits] = limits_of,
+    *,
+    rolls: bool = False,
 ) -> AnyLimits:
     """Limits of the contacts of a ground: numbers, in layered ground columns by their types, see `limits_between`.
 
-    materials : of its layers from the surface down.
+    materials : of its layers from the surface down. rolls : see `limits_between`.
     """
     if not isinstance(ground, LayeredGround):
         return of(materials[0])
     own = [materials[zone.layer] for zone in ground.zones]
     pairings = [(own[one], own[other]) for one, other in ground.pairings]
-    return limits_between(pairings, 2 * len(ground.brick.pairs), of)
+    return limits_between(pairings, 2 * len(ground.brick.pairs), of, rolls=rolls)
 
 
 def _weaker(one: RollingLimits, other: RollingLimits) -> RollingLimits:

@@ -192,5 +192,5 @@ def end_scene(case: DiskCase, side: str, bricks: int = LAST) -> DiskScene:
     case = case.uniform_at(case.box[3 if side == "top" else 1])  # beside layers the lowest
     static = None if LAWS[case.material.law].starts_elastic else case.static  # which gives contacts their stiffness
     alone = replace(case, packing=packing, boundary=ends, static=static, incident=None)
-    alone = replace(alone, hole=(), wall=(), joint=(), load=(), monitor=(), wave={})
+    alone = replace(alone, group=(), hole=(), wall=(), joint=(), load=(), monitor=(), wave={})
     return build(replace(alone, ground=case.ground.level()))

@@ -266,7 +266,9 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     case = scene.case
     if case.static is None:
         return {}
-    tables = {name: getattr(case, name) for name in ("packing", "material", "motion", "hole", "static")}
+    tables = {name: getattr(case, name) for name in ("packing", "material", "motion", "static")}
+    holes = [every_key(hole) for hole in case.hole if hole.stage != "run"]
+    tables["hole"] = [{key: each for key, each in hole.items() if key != "time"} for hole in holes]
     loads = [load for load in case.load if load.wave is None]
     sides = {side: every_key(table) for side, table in case.boundary.items() if table.needs_column}
     joined = {side: {"type": t.type} for side, t in case.boundary.items() if t.is_periodic or t.is_mirror}
@@ -281,6 +283,16 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["joint"] = case.joint
     if case.intact:
         keys["intact"] = case.intact
+    if case.group:
+        places = ("region", "points", "rr_fric")
+        keys["group"] = [
+            {
+                key: each
+                for key, each in every_key(group).items()
+                if key in places or (group.time is None and key != "name")
+            }
+            for group in case.group
+        ]
     if case.layer:
         keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]
     if case.is_unlike:
@@ -294,4 +306,6 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
         keys["unrelaxed"] = [one and one.unrelaxed * (one.relaxed if scene.ground.relaxes else 1.0) for one in each]
     settling = every_key(keys) | {"particles": scene.disk_count, "reduced": list(scene.reduced)}
     del settling["static"]["from"]
+    for side in settling["static"]["boundary"].values():
+        side.pop("until", None)  # of the run, as are holes that are made in it
     return settling

@@ -163,6 +163,26 @@ class Balance:
         self._relative += before - self.relative_work(displacement)
         self._free += free - self.free_work(displacement)
 
+    def end(
+        self, what: np.ndarray, displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
+    ) -> None:
+        """End the forces on some components (3, n) bool for good; nothing else carries them.
+
+        Other arguments as of `end_on_debris`.
+        """
+        before, free = self.relative_work(displacement), self.free_work(displacement)
+        change, followers = np.where(what, -self.force, 0.0), self.followers
+        # the force of the last step acted until half a step before the present displacements
+        self._of_ended -= float(np.sum(change * (displacement - self.datum - 0.5 * step * velocity)))
+        self._begun[what] = 0.0
+        self._note_begin()
+        self.force += change
+        load += change
+        followers.force[...] += _shares(followers.side)[:, None, :] * change[:2, followers.node]
+        followers.steady[...] += change[:2, followers.node]
+        self._relative += before - self.relative_work(displacement)
+        self._free += free - self.free_work(displacement)
+
     def relative_work(self, displacement: np.ndarray) -> np.ndarray:
         """Work (J) of the forces up to displacements (3, n), by carrier, less that on the mean motion of its side.
 

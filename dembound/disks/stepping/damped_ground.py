@@ -213,7 +213,7 @@ def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
     factors[:, 0] = np.concatenate([each[own, 0], each[other, 0]], axis=1)
     share = shares_of_others(scene.ground, scene.positions[owner[first]], scene.positions[neighbour[first]])
     factors[:, 1] = share[:, None] * np.concatenate([-each[own, 1], each[other, 1]], axis=1)
-    constants, row_of = elastic_constants(scene.ground) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
+    constants, row_of = elastic_constants(scene.inside) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
     slot = scene.layout.slot
     return Crossing(
         slot[target[first]],

@@ -200,6 +200,6 @@ class RecordedDisks(System):
         if whole is not scene:
             assert isinstance(whole, DiskBody)
             displacement = scene.widened("displacement", displacement.T).T
-            lists = [(plain_contacts(whole.ground, whole.assembly, whole.layout.slot), REFERENCE)]
+            lists = [(plain_contacts(whole.inside, whole.assembly, whole.layout.slot), REFERENCE)]
         each = (pieces(whole.layout, pairs, displacement, geometry) for pairs, geometry in lists)
         return contact_columns(chain(*each, joint_pieces(self.joints, scene, displacement)))

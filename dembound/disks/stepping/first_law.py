@@ -131,16 +131,18 @@ def balanced(
     joints = forces.of_joints(datum)
     inner += joints
     force = shift - inner - load
-    ended = np.where(_let_go(scene), force, 0.0)
+    ended = np.where(let_go(scene), force, 0.0)
     balance = Balance(scene, force - ended, load, datum, forces.across(disks.contacts))
     return balance, shift - forces.elastic(datum) - joints - ended
 
 
-def _let_go(scene: DiskBody) -> np.ndarray:
-    """Mask (3, n) of what static sides held whose reactions end when the run begins."""
+def let_go(scene: DiskBody, time: float | None = None) -> np.ndarray:
+    """Mask (3, n) of what static sides held whose reactions end at a time (s) of the run; None: as it begins."""
     found, static = np.zeros((3, scene.count), dtype=np.bool_), scene.case.static
     for side, table in {}.items() if static is None else static.boundary.items():
-        if side in scene.edges and isinstance(table, Holding) and table.reactions == "none":
+        if not (side in scene.edges and isinstance(table, Holding)):
+            continue
+        if table.reactions == "none" if time is None else table.until == time:
             edge = scene.edges[side]
             found[np.array(table.prescribed(edge.axis))[:, None], table.part_of(edge).nodes] = True
     return found

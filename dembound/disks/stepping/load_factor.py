@@ -15,6 +15,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.columns import COLUMNS
 from dembound.disks.material.at_rest import stressed
 from dembound.disks.material.constants import bond_factors, brick_constants, ground_limits, strength_of
+from dembound.disks.material.grouped import BEFORE
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.compiler.start_strain import began_of
@@ -49,20 +50,21 @@ class LoadFactor(Every):
     def __init__(self, case: DiskCase, system: DiskSystem) -> None:
         super().__init__(1)
         scene = system.scene
-        plain = brick_constants(scene.ground, gaps_close=True, locked_in=0.0)
-        limits = ground_limits(scene.ground, scene.case.materials, strength_of)
-        if scene.ground.is_layered:
+        plain = brick_constants(scene.inside, gaps_close=True, locked_in=0.0)
+        materials = scene.case.materials if scene.groups is None else scene.groups.materials_at(case, BEFORE)
+        limits = ground_limits(scene.inside, materials, strength_of)
+        if scene.inside.is_layered:
             plain = np.column_stack([plain, *columns_of(limits)])
         self._pairs = []
         for part in system.disks.parts:
-            constants, kind, _ = stressed(scene.ground, plain, part.assembly, scene.at_rest_of(part.name))
+            constants, kind, _ = stressed(scene.inside, plain, part.assembly, scene.at_rest_of(part.name))
             constants, columns = np.split(constants, [scene.ground.law.width + STRAIN], axis=1)
             pairs = part.pairs._replace(
                 constants=of_law(constants),
                 began=began_of(constants),
                 contact_type=kind.astype(np.uint32),
             )
-            own = in_columns(columns, limits.geometry) if scene.ground.is_layered else limits
+            own = in_columns(columns, limits.geometry) if scene.inside.is_layered else limits
             bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name in COLUMNS)
             strength = 1.0 if bonds is None else bonds.at(part.assembly.pairs[:, 0], part.assembly.contact_type)
             if scene.intact is not None:  # bonds that do not break have no limit

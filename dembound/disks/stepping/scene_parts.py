@@ -18,6 +18,7 @@ from dembound.disks.contacts.row_plan import RowPlan, plan_rows
 from dembound.disks.faces.found import numbers_beside
 from dembound.disks.faces.tie import JointTie
 from dembound.disks.material.constants import bond_factors, ground_limits
+from dembound.disks.material.grouped import BEFORE, GroupedGround
 from dembound.disks.material.layered import LayeredGround
 from dembound.disks.stepping.arms import arms_of, arms_per_bond
 from dembound.disks.stepping.damped_ground import disk_memories, ties_remembering
@@ -77,7 +78,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
     part = scene.assembly.part(nodes)
     beside = numbers_beside(scene.faces)
     return ContactList(
-        scene.ground.stepped,
+        (scene.ground if name in COLUMNS else scene.inside).stepped,
         scene.case.material,
         part,
         (along_x, along_y),
@@ -85,7 +86,7 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
         held,
         scene.disk_layout,
         _row_plan(scene, name, part),
-        _layers(scene, part),
+        None if name in COLUMNS and scene.groups else layers_of(scene, part),
         scene.at_rest_of(name),
         bond_factors(scene.case, scene.ground, part, alike=name in COLUMNS),
         Dashpots.of(scene.case, scene.disk_layout.spread(scene.mass[: scene.disk_count])),
@@ -95,14 +96,20 @@ def _contact_list(scene: DiskBody, name: str, nodes: slice) -> ContactList:
     )
 
 
-def _layers(scene: DiskBody, part: Assembly) -> tuple[AnyLimits, np.ndarray, np.ndarray] | None:
-    """Limits of contacts in columns, friction and resistance to rolling of each particle, in layered ground only."""
-    ground, materials = scene.ground, scene.case.materials
+def layers_of(scene: DiskBody, part: Assembly, time: float = BEFORE) -> tuple[AnyLimits, np.ndarray, np.ndarray] | None:
+    """Limits of contacts in columns, friction and resistance to rolling of each particle, at a time (s) of the run.
+
+    In layered ground and beside groups only.
+    """
+    ground, materials, case = scene.inside, scene.case.materials, scene.case
     if not isinstance(ground, LayeredGround):
         return None
+    if isinstance(ground, GroupedGround):
+        materials = ground.materials_at(case, time)
     layer = ground.layer_of(part.positions)
     friction, rolling = (np.array([getattr(each, key) for each in materials])[layer] for key in ("fric", "rr_fric"))
-    return ground_limits(ground, materials), friction, rolling
+    rolls = any(each.rr_fric > 0.0 for each in case.all_materials)
+    return ground_limits(ground, materials, rolls=rolls), friction, rolling
 
 
 def _row_plan(scene: DiskBody, name: str, part: Assembly) -> tuple[RowPlan, int] | None:
@@ -228,7 +235,7 @@ class DiskParts:
             lists = contact_lists(scene) if start is None else start.contacts
         beside = [each.disk for each in scene.faces]
         supported = scene.layout.slot[np.union1d(scene.supports.node, np.concatenate([tied_nodes(scene), *beside]))]
-        ground, layout = scene.ground.stepped, scene.layout
+        ground, layout = scene.inside.stepped, scene.layout
         self.parts = tuple(
             DiskPart(
                 name, ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), layout,

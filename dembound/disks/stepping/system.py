@@ -267,6 +267,11 @@ class DiskSystem(RecordedDisks):
         chosen = np.flatnonzero(disks)
         if len(chosen) == 0:
             return
+        self.stop(chosen, state, step)
+        self.leave_out(disks, state.displacement)
+
+    def stop(self, chosen: np.ndarray, state: State, step: float) -> None:
+        """Stop disks (k,) that only steady forces act on, for good; see `retire`."""
         slots, inertia = state.layout.slot[chosen], np.stack([self.scene.mass, self.scene.mass, self.scene.inertia])
         v = state.v[:, slots]
         force = self.steady[:, chosen] if self.steady.size else np.zeros_like(v)
@@ -277,7 +282,9 @@ class DiskSystem(RecordedDisks):
             self.steady[:, chosen] = 0.0
         if self.balance is not None:
             self.balance.leave_alone(chosen)
-        displacement = state.displacement
+
+    def leave_out(self, disks: np.ndarray, displacement: np.ndarray) -> None:
+        """Drop all pairs of disks (m,) bool, which meet no others any more; displacements (3, n)."""
         for pairs in self.contacts.values():
             pairs.retired |= disks[pairs.nodes]
             pairs.search(displacement)

@@ -140,8 +140,8 @@ class WallPart(Part):
         order = np.argsort(slot)
         disks = np.arange(own.start, own.stop)[order]
         place = scene.assembly.positions[disks]
-        moduli = [each.moduli for each in scene.ground.materials]
-        layer = scene.ground.layer_of(place)
+        moduli = [each.moduli for each in scene.inside.materials]
+        layer = scene.inside.layer_of(place)
         kn, kratio = (np.array(each)[layer] for each in ([2.0 * m.emod for m in moduli], [m.kratio for m in moduli]))
         return {
             "slot": slot[order],

@@ -246,7 +246,8 @@ class _Strip:
         from scipy.sparse.linalg import spsolve
 
         assembly, ground = self.scene.assembly, self.scene.ground
-        halved, kind = np.divmod(assembly.contact_type, len(ground.brick.pairs))
+        contacts = len(ground.brick.pairs)
+        halved, kind = np.divmod(assembly.contact_type % (2 * contacts), contacts)
         stiffness = ground.stiffness.of(kind).times(np.where(halved > 0, 0.5, 1.0))
         network = Network(len(assembly.radii), assembly.pairs, ground.brick.vectors[kind], stiffness)
         ways = network.motion_matrix()[:, free.ravel()]

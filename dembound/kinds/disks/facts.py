@@ -8,7 +8,6 @@ import numpy as np
 from dembound.boundaries.description import side_in_words
 from dembound.boundaries.platen import Keeping
 from dembound.boundaries.viscous import Bearing
-from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import FREE_FIELD, Load
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.disks.static import can_break, keeps_forces
@@ -22,6 +21,7 @@ from dembound.formulas.disks.entry import MOTIONS
 from dembound.formulas.disks.reflections import sent_back
 from dembound.kinds.disks.continuum_facts import continuum_facts
 from dembound.kinds.disks.ground import ground_facts, particles_per
+from dembound.kinds.disks.groups import group_facts, hole_facts, later_facts
 from dembound.kinds.disks.incident_wave import incident_facts
 from dembound.kinds.disks.joints import joint_facts
 from dembound.kinds.disks.slopes import slope_facts
@@ -45,8 +45,10 @@ def disk_facts(scene: DiskScene) -> Entries:
     if not scene.layout.is_plain:
         yield "vector lanes", f"{100.0 * fill(scene.layout):.0f} % hold particles"
     yield from ground_facts(scene)
-    yield from _hole_facts(case)
+    yield from hole_facts(case)
     yield from joint_facts(scene)
+    yield from group_facts(scene)
+    yield from later_facts(case)
     yield from _static_facts(scene)
     yield from intact_facts(scene)
     yield from slope_facts(scene)
@@ -104,15 +106,6 @@ def _particles(scene: DiskScene) -> str:
     before = f", {scene.before.disk_count:,} before the excavation" if scene.before is not None else ""
     severed = f"; {counted(loose, 'severed disk')} left out" if loose else ""
     return f"{scene.disk_count:,}{before}{severed}"
-
-
-def _hole_facts(case: DiskCase) -> Entries:
-    """Shape of every hole, and the stage in which it is made."""
-    stages = {"before": "present from the start", "after": "excavated once the body has settled"}
-    yield from (
-        (f"hole {hole.name}", f"{hole.type}, {'shape of the sample' if hole.is_shape else stages[hole.stage]}")
-        for hole in case.hole
-    )
 
 
 def _static_facts(scene: DiskScene) -> Entries:

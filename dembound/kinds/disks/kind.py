@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from dembound.casefile.disks import SCHEMA, DiskCase
+from dembound.disks.changes import Changes, require_inner_holes, times_of
 from dembound.disks.contacts.pairs import first_break
 from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
@@ -76,6 +77,7 @@ class Disks(Kind[DiskCase, DiskScene]):
             if each.has_history:  # under other laws zones matter to load factors only
                 require_room(case, each.intact_zones, each.disk_count - each.column_count)
         require_clear(scene)
+        require_inner_holes(scene)
         _ = scene.steady_load, [layer.material_tensor for layer in scene.ground.materials]
         return scene
 
@@ -107,6 +109,8 @@ class Disks(Kind[DiskCase, DiskScene]):
         assert isinstance(system, DiskSystem)
         assert isinstance(scene, DiskScene)
         found: list[Tracker] = [Membranes(scene)] if follows(scene) else []
+        if times_of(case):
+            found.append(Changes(scene, system, run.time_step))
         if scene.has_history:
             found.append(FarDisks(scene, retires=case.run.far == "retire"))
         if not scene.ground.law.starts_elastic:

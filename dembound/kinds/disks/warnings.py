@@ -170,7 +170,8 @@ def _hangs(scene: DiskScene) -> Iterator[str]:
     for axis in sorted({0, 1} - borne - {*scene.ground.held}):
         loads = [load.name for load in case.load if load.wave is None and load.moves_along(axis)]
         sides = [side for side, table in static.boundary.items() if axis in table.prescribed(normal_axis(side))]
-        kept = [side for side in sides if getattr(static.boundary[side], "reactions", "") == "kept"]
+        own = {side: vars(static.boundary[side]) for side in sides}
+        kept = [side for side in sides if own[side].get("reactions") == "kept" and own[side].get("until") is None]
         if loads and kept:
             yield (
                 f"static.boundary.{kept[0]}: bears load.{loads[0]} along {'xy'[axis]}, as no side does in the run; its "

@@ -55,6 +55,8 @@ def problems_of(case: DiskCase) -> Iterator[str]:
         yield f'material.law: is "{law}", {why}; a library adds up motion, so {linear}'
     if any(not joint.is_linear for joint in case.joint):
         yield "joint: parts and slides, so motion does not add up as in a library; leave fric out, or the joints"
+    if case.group:
+        yield "group: a library is of ground without groups; leave them out"
     if damp > 0.0:
         yield f"material.damp: is {damp:g}, must be 0 in a library, as local damping is not linear"
     if not inputs_of(case):

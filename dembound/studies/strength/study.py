@@ -109,11 +109,11 @@ class Strength:
 T = TypeVar("T", bound=Table)
 
 STRENGTHS = ("fric", "rr_fric", "ten", "coh", "pb_ten", "pb_coh", "pb_fa")
-"""Keys of [material], layers and joints that are strengths."""
+"""Keys of [material], layers, joints and groups that are strengths."""
 
 
 def weaker(case: DiskCase, factor: float) -> DiskCase:
-    """The case with all strengths, of [material], of layers and of joints, divided by a factor."""
+    """The case with all strengths, of [material], layers, joints and groups, divided by a factor."""
 
     def divided(table: T) -> T:
         given = {key: getattr(table, key, None) for key in STRENGTHS}
@@ -122,8 +122,12 @@ def weaker(case: DiskCase, factor: float) -> DiskCase:
             changes["pb_fa"] = degrees(atan(tan(radians(angle)) / factor))
         return table.model_copy(update=changes)
 
-    layers, joints = tuple(map(divided, case.layer)), tuple(map(divided, case.joint))
-    return replace(case, material=divided(case.material), layer=layers, joint=joints)
+    layers, joints, groups = (
+        tuple(map(divided, case.layer)),
+        tuple(map(divided, case.joint)),
+        tuple(map(divided, case.group)),
+    )
+    return replace(case, material=divided(case.material), layer=layers, joint=joints, group=groups)
 
 
 def require_strengths(case: DiskCase) -> None:
@@ -133,7 +137,7 @@ def require_strengths(case: DiskCase) -> None:
         said = f'is "{law.name}", under which nothing breaks or slides'
         needed = f"--strength needs {with_history()} and strengths, {WEAK}"
         problems.append(f"material.law: {said}; {needed}")
-    elif not can_break(case.materials) and not any(each.fric > 0.0 for each in case.materials):
+    elif not can_break(case.all_materials) and not any(each.fric > 0.0 for each in case.all_materials):
         problems.append("material.fric: is 0, and bonds have no strength; --strength needs fric, pb_ten or pb_coh")
     if case.static is None:
         problems.append("static: is missing; --strength brings the body to rest under its weight")
@@ -268,6 +272,8 @@ def _about(scene: DiskScene) -> Iterator[str]:
     yield f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
     if scene.case.intact:
         yield f"bonds beside {' and '.join(scene.case.intact)} do not break (intact), nor are they reduced"
+    if later := [group.name for group in scene.case.group if group.time is not None]:
+        yield f"group {' and '.join(later)} is as before its time, of the run; leave time out for the state after it"
     static = scene.case.static
     sides = static.boundary if static is not None else {}
     if holding := [side for side in ("left", "right") if side in sides and 0 in sides[side].prescribed(0)]:

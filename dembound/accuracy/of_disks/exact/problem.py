@@ -83,8 +83,9 @@ def law_problems(case: DiskCase) -> Iterator[str]:
         name = case.material.law
         must = "have no history" if LAWS[name].has_history else "be linear"
         yield f'material.law: is "{name}", must {must}, as "elastic"; the solution is that of a linear solid'
-    if case.joint:
-        yield "joint: must be left out; the solution is that of a solid without joints"
+    for key in ("joint", "group"):
+        if getattr(case, key):
+            yield f"{key}: must be left out; the solution is that of a solid without {key}s"
     if case.is_damped:
         yield "material.quality_factor: must be left out; the solution is that of an undamped solid"
 

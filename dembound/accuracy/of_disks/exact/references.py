@@ -78,7 +78,7 @@ class ExactPlaneWave(Exact[DiskCase]):
             return None
         ((side, waves),) = case.driving.items()
         far = case.side(OPPOSITE[side])
-        if case.side(side).is_interface or far.is_interface or case.joint:
+        if case.side(side).is_interface or far.is_interface or case.joint or case.group:
             return None
         if len(waves) != 1 or not far.factors or far.waves or not LAWS[case.material.law].is_linear:
             return None
@@ -130,6 +130,7 @@ class ExactLayeredColumn(Exact[DiskCase]):
             len(case.layer) < 2
             or case.holes
             or case.joint
+            or case.group
             or case.load
             or case.static
             or list(case.driving) != ["bottom"]
