@@ -205,7 +205,7 @@ class _Line:
         self.points = np.vstack([first, points[1:-1], last])
         steps = np.diff(self.points, axis=0)
         self.lengths = np.hypot(*steps.T)
-        self.along = steps / self.lengths[:, None]
+        self.along = steps / np.maximum(self.lengths, 1e-300)[:, None]  # 0 where all of it is cut off
         self.begins = np.concatenate([[0.0], np.cumsum(self.lengths)])
         self.length = float(self.begins[-1])
 
