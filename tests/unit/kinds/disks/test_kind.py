@@ -113,6 +113,8 @@ def test_only_what_applies_is_reported() -> None:
     assert disk_outcome(elastic) == []
     said = "contacts slid or opened while the body settled, so that its rest is one of several: dembound estimate says"
     assert disk_outcome(elastic | {"static": settled | {"elastic": False}})[1].startswith(said)
+    joints = {"static": settled | {"elastic": False}, "joints": {"fault": {}}}  # errors beside them are not predicted
+    assert disk_outcome(elastic | joints | {"cracks": {"tension": 0, "shear": 0}})[1] == said.split(":")[0]
     first = {"factor": 1.25, "limit": "slides", "time": 0.5, "position": [3.0, 4.0], "particles": [1, 2]}
     assert disk_outcome(elastic | {"load_factor": first}) == [
         "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"
