@@ -192,8 +192,8 @@ class _Line:
     """
 
     def __init__(self, points: np.ndarray, box: Box, ends: Mapping[str, float]) -> None:
-        near = [ends.get(side, 0.0) * (1.0 if number < 2 else -1.0) for number, side in enumerate(CORNERS)]
-        inner = np.add(box, near)
+        near = [ends.get(side, 0.0) for side in CORNERS]
+        inner = box[0] + near[0], box[1] + near[1], box[2] - near[2], box[3] - near[3]
         outer = [not _is_inside(point, inner) for point in points[[0, -1]]]
         each = zip(outer, points[[1, -2]], points[[0, -1]], strict=True)
         first, last = (_entry(inside, end, inner) if out else end for out, inside, end in each)
