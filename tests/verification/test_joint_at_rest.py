@@ -1,6 +1,7 @@
 """A joint in ground at rest bears the stress of the ground, and nothing moves once the run begins."""
 
 import numpy as np
+import pytest
 import tomli_w
 
 from dembound.disks.rest.stage import settle
@@ -69,3 +70,30 @@ def test_a_slope_stands_on_a_joint_that_dips_out_of_it(lab):
     simulation.run(500)
     # beside waves of millimetres per second; what has slid while it settled creeps to its limit
     assert np.abs(simulation.state.velocity).max() < 1e-8
+
+
+@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+def test_what_an_excavation_leaves_rests_on_the_faces_that_are_left(lab, law):
+    level = 3.0
+    strength = {} if law == "elastic" else {"law": law, "fric": 0.5}
+    case = lab.case(
+        "A", (10.0, 6.0), held=(), material=strength, boundary={"bottom": {"type": "fixed", "artificial": False}},
+        load=[{"acceleration": [0.0, -9.81]}], static={"boundary": {"bottom": {"type": "fixed"}}},
+    )  # fmt: skip
+    joint = {"name": "joint", "points": [[-1.0, level], [11.0, level]], "kn": 1e9, "ks": 1e9, "fric": 0.3}
+    pit = {"name": "pit", "type": "rectangle", "corners": [4.0, 2.0, 7.0, 7.0], "stage": "after"}
+    scene = build(with_changes(case, {"joint": [joint], "hole": [pit]}))
+    settled = settle(scene)
+    simulation = lab.simulation(scene, settled.start)
+    pairs, faces = simulation.system.joints[0].acting, scene.faces[0]
+    # two blocks, each on its own faces: nothing else bears them
+    push, x = pairs.length * pairs.pressure, faces.ends[pairs.first, 0, 0]
+    assert (scene.before.faces[0].split, faces.split, len(faces.disk)) == (20, 14, 28)
+    for inside in (x < 5.0, x > 5.0):
+        place = scene.positions[:, 0]
+        block = (scene.positions[:, 1] > level) & ((place < 5.0) == (x[inside][0] < 5.0))
+        np.testing.assert_allclose(
+            push[inside].sum(), 9.81 * scene.mass[block].sum(), rtol=1e-4
+        )  # static.ratio is 1e-5
+    simulation.run(500)
+    assert np.abs(simulation.state.velocity).max() < 1e-12

@@ -91,8 +91,6 @@ def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     yield from _taken_names(joints)
     if (material := tables["material"]) and (why := _unknown_law(material.law)):
         yield f"{place}: {why}"
-    if any(hole and hole.stage == "after" for hole in tables["hole"]):
-        yield f'{place}: is for ground without an excavation; let holes have stage = "before"'
     if packing := tables["packing"]:
         box, diameter = packing.box, 2.0 * packing.radius
         for place, joint in joints.items():

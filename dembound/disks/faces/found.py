@@ -54,6 +54,25 @@ class Faces:
         """Length (m) of the faces on the left."""
         return float(np.hypot(*(self.ends[: self.split, 1] - self.ends[: self.split, 0]).T).sum())
 
+    def among(self, kept: np.ndarray, begin: int) -> Faces:
+        """The faces of disks that are left of a body: kept (k,) before, numbered from `begin` on, after others."""
+        number = np.full(len(self.side), -1)
+        number[kept] = begin + np.arange(len(kept))
+        left = self.left_of(kept)
+        side = np.concatenate([np.zeros(begin, np.int8), self.side[kept]])
+        each = (values[left] for values in (number[self.disk], self.ends, self.along))
+        split, removed = int(np.count_nonzero(left[: self.split])), self.removed[:, left]
+        return Faces(self.joint, split, *each, side, removed, self.cut, self.ended_at)
+
+    def left_of(self, kept: np.ndarray) -> np.ndarray:
+        """Whether each face (m,) is that of a disk among those kept (k,)."""
+        return np.isin(self.disk, kept)
+
+    @property
+    def has_two_sides(self) -> bool:
+        """Whether there are faces on both sides."""
+        return 0 < self.split < len(self.disk)
+
     @property
     def stiffness(self) -> np.ndarray:
         """Normal and shear stiffness (2, m) Pa/m of the faces: with removed contacts in series, those asked for."""
@@ -95,7 +114,7 @@ def faces_of(
         split = sum(len(each[0]) for each in found) if way == 1 else split
     disk, parts, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
     faces = Faces(joint, split, disk, parts, along, side.astype(np.int8), np.zeros((2, len(disk))), int(crossing.sum()))
-    if not (0 < split < len(disk) and crossing.any()):
+    if not (faces.has_two_sides and crossing.any()):
         return faces
     there = [np.abs(parts - point).max(axis=2).min() < 2.0 * assembly.radii.max() for point in line.points[[0, -1]]]
     ended_at = tuple(side for side, is_there in zip(line.ended_at, there, strict=True) if side and is_there)
@@ -103,12 +122,27 @@ def faces_of(
 
 
 def with_joints(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    begin: int,
+    before: tuple[Sequence[Faces], np.ndarray] | None = None,
 ) -> tuple[Assembly, tuple[Faces, ...]]:
     """An assembly without the contacts that the joints of a case replace, and their faces.
 
-    begin : number of the first disk of the body, which follows those of columns.
+    begin : number of the first disk of the body, which follows those of columns. before : the faces before an
+    excavation, and the disks (k,) left of the body then; those that are left stay as they were.
     """
+    faces = _found(case, ground, assembly, begin) if before is None else _left(*before, begin)
+    if not faces:
+        return assembly, ()
+    crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
+    left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
+    return left, faces
+
+
+def _found(case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int) -> tuple[Faces, ...]:
+    """The faces of all joints of a case, see `with_joints`; raises CaseError for joints without any."""
     body, ends = slice(begin, len(assembly.radii)), joint_ends(case.boundary, case.intact, 2.0 * case.packing.radius)
     faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box, ends) for joint in case.joint)
     if nowhere := [
@@ -118,11 +152,12 @@ def with_joints(
         raise CaseError(
             [f"{place}.points: has no disks on both sides, must cross a part {beside}" for place in nowhere]
         )
-    if not faces:
-        return assembly, ()
-    crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
-    left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
-    return left, faces
+    return faces
+
+
+def _left(before: Sequence[Faces], kept: np.ndarray, begin: int) -> tuple[Faces, ...]:
+    """The faces that are left of joints, without joints of which one side is gone; see `Faces.among`."""
+    return tuple(each for each in (faces.among(kept, begin) for faces in before) if each.has_two_sides)
 
 
 def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:

@@ -14,7 +14,7 @@ from dembound.errors import RunError
 from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
 from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
 from dembound.motion.part import Cracks, Tie, joined
-from dembound.motion.state import Arrays, Layout
+from dembound.motion.state import Arrays, Layout, arrays_of_owner
 
 ROOM = 8
 """Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other."""
@@ -213,6 +213,27 @@ class JointTie(Tie):
 def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
     """The arrays of all joints, copied, by the names of joint and array."""
     return {f"{tie.name}/{name}": values.copy() for tie in ties for name, values in tie.saved_arrays().items()}
+
+
+def states_among(
+    states: Arrays, before: Sequence[Faces], after: Sequence[Faces], kept: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The arrays of joints (`states_of`) of which only the faces of disks kept (k,) are left after an excavation."""
+    of_name, found = {each.joint.name: each for each in before}, {}
+    for faces in after:
+        owner = f"joint_{faces.joint.name}"
+        saved, left = arrays_of_owner(states, owner), of_name[faces.joint.name].left_of(kept)
+        number, room = np.cumsum(left) - 1, ROOM * len(faces.disk)
+        first, second = (saved[f"pair_{name}"][: saved["counts"][PAIRS]] for name in ("first", "second"))
+        chosen = np.flatnonzero(left[first] & left[second])
+        own = {"listed": saved["listed"][left], "events": np.zeros((room, 6))}
+        own["counts"] = np.array([len(chosen), 0, 0, len(chosen)])
+        for name, empty in _empty_pairs(room)._asdict().items():
+            values = saved[f"pair_{name}"][chosen]
+            empty[: len(chosen)] = number[values] if name in ("first", "second") else values
+            own[f"pair_{name}"] = empty
+        found |= {f"{owner}/{name}": values for name, values in own.items()}
+    return found
 
 
 def cracks_of(ties: Sequence[JointTie]) -> Cracks:
