@@ -128,6 +128,9 @@ class Judge(ABC, Generic[C, S]):
         is done. longest : CPU seconds that companions may take, if that is more than by default.
         """
 
+    def require_known(self, case: C) -> None:
+        """Raise CaseError for a case of which errors are not predicted; by default there are none."""
+
     def truth(self, case: C) -> Truth:
         """The truth, "disks" or "rock", to which errors of a case are relative by default."""
         return "rock"

@@ -46,10 +46,13 @@ FILES = ("run.h5", "summary.json", "histories.png", "histories_stress.png", "sce
 def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False) -> Iterator[str]:
     """The lines after a run with results in a folder; scripts may read the lines that begin with its name.
 
-    estimated : whether its errors will be estimated, so that the command for it is not printed.
+    estimated : whether its errors will be estimated, so that the command for it is not printed; nor is it where errors
+    are not predicted.
     """
+    from dembound.accuracy.judge import judge_of
     from dembound.kinds import kind_of_record
     from dembound.results.summary import end_in_words
+    from dembound.running.recorded import recorded_case
 
     name = summary["name"]
     for fact in (*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)):
@@ -61,6 +64,11 @@ def ending(folder: Path, summary: Mapping[str, Any], *, estimated: bool = False)
     path = shlex.quote(str(folder))
     yield f"  next: dembound report {path}"
     if summary["monitors"] and not estimated:
+        case = recorded_case(folder / "run.h5")
+        try:
+            judge_of(case).require_known(case)
+        except CaseError:
+            return
         yield f"        dembound estimate {path}"
 
 

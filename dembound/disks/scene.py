@@ -29,7 +29,7 @@ from dembound.disks.columns import (
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
-from dembound.disks.faces.found import with_joints
+from dembound.disks.faces.found import Faces, with_joints
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.grouped import GroupedGround
@@ -189,10 +189,10 @@ def build(case: DiskCase) -> DiskScene:
     scene = _scene(case, ground, body, edges, case.floors_of(first), groups)
     if not later:
         return scene
-    body, edges, kept = hollowed(case, ground.brick, body, edges, later, case.floors)
-    after = _scene(case, ground, body, edges, case.floors, groups)
-    columns = [_same_in(scene, after, seam) for seam in after.seams]
-    return replace(after, before=scene, kept=np.concatenate([*columns, scene.column_count + kept]))
+    body, edges, left = hollowed(case, ground.brick, body, edges, later, case.floors)
+    kept = scene.column_count + left
+    after = _scene(case, ground, body, edges, case.floors, groups, (scene.faces, kept))
+    return replace(after, before=scene, kept=np.concatenate([*(_same_in(scene, after, s) for s in after.seams), kept]))
 
 
 def _same_in(before: DiskScene, after: DiskScene, seam: Seam) -> np.ndarray:
@@ -215,10 +215,12 @@ def _scene(
     edges: Mapping[str, Edge],
     floors: Mapping[str, Floor] = NO_FLOORS,
     groups: GroupedGround | None = None,
+    before: tuple[Sequence[Faces], np.ndarray] | None = None,
 ) -> DiskScene:
     """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides.
 
-    floors : left by its holes at left and right sides. groups : the ground of its disks, see `DiskBody`.
+    floors : left by its holes at left and right sides. groups : the ground of its disks, see `DiskBody`. before : of an
+    excavation, see `with_joints`.
     """
     body, beyond = assembly, case.outside_sides
     seams: tuple[Seam, ...] = ()
@@ -236,17 +238,16 @@ def _scene(
         assembly, seams = with_columns(ground.brick, body, standing, case.column_rows, (left, bottom, right))
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
-    count, surface = len(assembly.radii), case.surface
-    assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
+    assembly, faces = with_joints(case, ground, assembly, columns_end(seams), before)
     assembly, seams = with_layers(ground, assembly, seams)
     assembly = assembly if groups is None else groups.typed(assembly, columns_end(seams))
-    edges = with_shares(count, edges, case.boundary)
+    edges = with_shares(count := len(assembly.radii), edges, case.boundary)
     slots, rows = lay_out(
         assembly,
         (groups or ground).stepped,
         parts_of(count, seams),
         mass_factor(count, edges, case.boundary),
-        levels_by_part(case, ground, assembly, seams, surface),
+        levels_by_part(case, ground, assembly, seams, case.surface),
     )
     outside, layout = None, slots
     if outline is not None:
@@ -272,7 +273,7 @@ def _scene(
         feet=tuple(feet),
         between=between,
         ground_waves=waves,
-        surface=surface,
+        surface=case.surface,
         faces=faces,
         groups=groups,
     )

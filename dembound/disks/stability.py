@@ -9,7 +9,6 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts.dashpots import brick_dashpots, viscosity
 from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.faces.springs import filling_springs
-from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.damped_ground import growing_by_lag
@@ -65,7 +64,7 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     """
     bounds = [(_largest_eigenvalue(scene), 0.0)]
     if scene.has_history:
-        zones, dashed = _zones_of(scene.inside), viscous and scene.case.material.has_dashpots
+        zones, dashed = scene.inside.zone_materials, viscous and scene.case.material.has_dashpots
         opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.inside.materials)
         if dashed and scene.case.damps_bonds:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
@@ -219,11 +218,6 @@ def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
     return fill
 
 
-def _zones_of(ground: PackedMaterial) -> list[PackedMaterial]:
-    """All materials of which disks of the ground are."""
-    return [zone.material for zone in ground.zones] if isinstance(ground, LayeredGround) else [ground]
-
-
 def _loose_eigenvalue(ground: PackedMaterial) -> float:
     """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
 
@@ -242,7 +236,7 @@ def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
     disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls.
     """
     stiffer, slower = 0.0, 0.0
-    for ground in _zones_of(scene.inside):
+    for ground in scene.inside.zone_materials:
         (normal, shear), mass = _loose_springs(ground), float(ground.mass.min())
         for wall in scene.case.wall:
             kn = wall.kn or 2.0 * ground.moduli.emod

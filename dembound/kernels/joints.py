@@ -56,13 +56,14 @@ def _stress(joint, k, gap, moved, length, place):
     gap : m, beyond what the faces are pressed in; moved : m, shear displacement; place : x, y (m) of the overlap.
     """
     law, pairs = joint.law, joint.pairs
-    push, rub = -law.kn * gap, -law.ks * (moved - pairs.slip[k])
+    kn, ks = pairs.kn[k], pairs.ks[k]
+    push, rub = -kn * gap, -ks * (moved - pairs.slip[k])
     slipped, slides, cracked = 0.0, False, 0.0
     if law.fails and pairs.intact[k]:
         torn = push < -law.tension
         if torn or abs(rub) > law.cohesion + law.friction * max(push, 0.0):
             pairs.intact[k] = False
-            cracked = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
+            cracked = 0.5 * length * (push * push / kn + rub * rub / ks)
             _note_event(joint, k, torn, place[0], place[1])
     if law.fails and not pairs.intact[k]:
         push = max(push, 0.0)
@@ -72,7 +73,7 @@ def _stress(joint, k, gap, moved, length, place):
         if abs(rub) > most:
             slides = push > 0.0
             rub = np.copysign(most, rub)
-            slip = moved + rub / law.ks
+            slip = moved + rub / ks
             slipped = slip - pairs.slip[k]
             pairs.slip[k] = slip
     return push, rub, slipped, slides, cracked
@@ -89,7 +90,7 @@ def _add(force, f, fx, fy, moment):
 @njit(**FAST)
 def _push_pair(joint, k, u, v):
     """Forces of pair k on the disks of its faces, added to joint.force, and what it has taken, to joint.lost."""
-    law, pairs, lost, now = joint.law, joint.pairs, joint.lost, joint.now
+    pairs, lost, now = joint.pairs, joint.lost, joint.now
     f, g = U(pairs.first[k]), U(pairs.second[k])
     i, j = U(joint.disk[f]), U(joint.disk[g])
     tx, ty = joint.along[f, U(0)] + joint.along[g, U(0)], joint.along[f, U(1)] + joint.along[g, U(1)]
@@ -127,9 +128,9 @@ def _push_pair(joint, k, u, v):
         gap -= joint.closure[f] + joint.closure[g]
         place = ax + tx * middle, ay + ty * middle
         push, rub, slipped, slides, cracked = _stress(joint, k, gap, moved, length, place)
-    energy = 0.5 * length * (push * push / law.kn + rub * rub / law.ks)
+    energy = 0.5 * length * (push * push / pairs.kn[k] + rub * rub / pairs.ks[k])
     # what the forces have taken from the disks since the step before, and is not stored
-    half = 0.5 * law.step
+    half = 0.5 * joint.law.step
     was_push, was_rub = before * pairs.pressure[k], before * pairs.shear[k]
     done = half * (was_push * opened + length * push * opening + (was_rub + length * rub) * sliding)
     taken = -done - (energy - pairs.energy[k])
@@ -171,6 +172,7 @@ def _note_event(joint, k, torn, x, y):
 def _copy(one, k, other, q):
     """Copy pair k of one list to place q of another."""
     other.first[q], other.second[q] = one.first[k], one.second[k]
+    other.kn[q], other.ks[q] = one.kn[k], one.ks[k]
     other.intact[q], other.slides[q] = one.intact[k], one.slides[k]
     other.slip[q], other.length[q] = one.slip[k], one.length[k]
     other.pressure[q], other.shear[q], other.drag[q] = one.pressure[k], one.shear[k], one.drag[k]
@@ -179,9 +181,17 @@ def _copy(one, k, other, q):
 
 
 @njit(**FAST)
-def _begin_pair(pairs, q, f, g):
-    """Make pair q one of faces f and g without overlap."""
+def _in_series(one, other):
+    """Stiffness between the faces of two disks, each of which gives by half of what its stiffness (Pa/m) says."""
+    return one if one == other else 2.0 * one * other / (one + other)
+
+
+@njit(**FAST)
+def _begin_pair(joint, q, f, g):
+    """Make pair q of the spare list one of faces f and g without overlap."""
+    pairs, each = joint.spare, joint.stiffness
     pairs.first[q], pairs.second[q] = f, g
+    pairs.kn[q], pairs.ks[q] = _in_series(each[0, f], each[0, g]), _in_series(each[1, f], each[1, g])
     pairs.intact[q], pairs.slides[q] = False, False
     pairs.slip[q], pairs.length[q] = 0.0, 0.0
     pairs.pressure[q], pairs.shear[q], pairs.drag[q] = 0.0, 0.0, 0.0
@@ -215,7 +225,7 @@ def list_faces(joint, u):
                     if known:
                         _copy(pairs, at, spare, found)
                     else:
-                        _begin_pair(spare, found, f, g)
+                        _begin_pair(joint, found, f, g)
                 found += 1
     joint.counts[NEEDED] = max(joint.counts[NEEDED], found)
     found = min(found, room)

@@ -45,7 +45,7 @@ def halves(lab, keys):
 
 def test_tension(pulled):
     move, tie = pulled
-    opening = TENSION / tie.faces.stiffness[0]
+    opening = TENSION / tie.faces.stiffness[0, 0]
     stresses = np.array([move(share * opening, 0.0)[0] for share in np.linspace(0.0, 1.2, 241)])
     np.testing.assert_allclose(-stresses.min(), TENSION, rtol=5e-3)  # steps of half a percent
     assert stresses[-1] == 0.0
@@ -58,14 +58,14 @@ def test_tension(pulled):
 def test_cohesion_and_friction(pulled):
     move, tie = pulled
     pressure = 4e5
-    closed, way = -pressure / tie.faces.stiffness[0], (COHESION + FRICTION * pressure) / tie.faces.stiffness[1]
+    closed, way = -pressure / tie.faces.stiffness[0, 0], (COHESION + FRICTION * pressure) / tie.faces.stiffness[1, 0]
     found = np.array([move(closed, share * way) for share in np.linspace(0.0, 1.2, 241)])
     # the upper half moves by at most 0.1 mm, which changes no overlap by more than 4e-4
     np.testing.assert_allclose(found[:, 0], pressure, rtol=1e-9)
     np.testing.assert_allclose(-found[:, 1].min(), COHESION + FRICTION * pressure, rtol=5e-3)
     np.testing.assert_allclose(found[-1, 1], -FRICTION * pressure, rtol=1e-9)
     assert tie.take_cracks().shear.all()
-    back = move(closed, 1.2 * way - 2.0 * FRICTION * pressure / tie.faces.stiffness[1])
+    back = move(closed, 1.2 * way - 2.0 * FRICTION * pressure / tie.faces.stiffness[1, 0])
     np.testing.assert_allclose(back[1], FRICTION * pressure, rtol=1e-9)
 
 
@@ -78,12 +78,14 @@ def test_faces_that_come_to_lie_opposite_each_other_begin_without_shear(lab):
     # those a diameter ahead have met at the start, those two ahead after a shift of one, within a step
     assert set(np.round(apart, 9)) == {0.5, 1.0}
     met = np.where(apart > 0.75, 0.5, 0.0)
-    np.testing.assert_allclose(pairs.shear, -tie.faces.stiffness[1] * (0.75 - met), atol=0.006 * tie.faces.stiffness[1])
+    np.testing.assert_allclose(
+        pairs.shear, -tie.faces.stiffness[1, 0] * (0.75 - met), atol=0.006 * tie.faces.stiffness[1, 0]
+    )
 
 
 def test_sliding_back_and_forth_loses_twice_friction_times_the_way(pulled):
     move, tie = pulled
-    closed, way = -4e5 / tie.faces.stiffness[0], 0.3
+    closed, way = -4e5 / tie.faces.stiffness[0, 0], 0.3
     move(closed, 1e-3)  # it has lost its cohesion
     stresses = []
     for shift in [*np.linspace(1e-3, way, 400), *np.linspace(way, 1e-3, 400)]:

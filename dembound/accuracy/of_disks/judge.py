@@ -137,9 +137,13 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         longest: float | None = None,
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
+        self.require_known(case)
+        return causes_of_run(case, recorded, time_step, work, most, watch, longest)
+
+    def require_known(self, case: DiskCase) -> None:
+        """Raise CaseError for cases of which errors are not predicted: by their law, their ground, or what is in it."""
         _require_linear(case)
         require_one_ground(case)
-        return causes_of_run(case, recorded, time_step, work, most, watch, longest)
 
     def truth(self, case: DiskCase) -> Truth:
         """The default truth: "disks" where the packing is random or bonds may break, else "rock"."""
@@ -182,8 +186,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         Raises CaseError for cases without waves and where no choice keeps the values of `kept`; the errors of building
         and running the companions.
         """
-        _require_linear(case)
-        require_one_ground(case)
+        self.require_known(case)
         _require_known(case)
         kept = [*kept, "packing.radius"] if of == "disks" else kept
         watch.begins("the packing, and the time step")
@@ -268,8 +271,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
 
     def quick(self, scene: DiskScene) -> Causes:
         """The continuum and walls by formula."""
-        _require_linear(scene.case)
-        require_one_ground(scene.case)
+        self.require_known(scene.case)
         return quick_causes(scene)
 
 

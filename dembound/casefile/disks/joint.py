@@ -19,6 +19,12 @@ KINK = 10.0
 APART = 3.0
 """Least distance of two joints over the mean diameter."""
 
+CORNERS = ("left", "bottom", "right", "top")
+"""The sides in the order of a box."""
+
+BRIDGE = 2
+"""Disks, at least, between the end of a joint and a side beyond which the ground goes on."""
+
 STRENGTH_KEYS = ("ten", "coh")
 """Keys of a joint's bonds, which need a friction that is left when they break."""
 
@@ -67,6 +73,15 @@ class Joint(Table):
         return self.fric is None
 
 
+def joint_ends(boundary: Mapping[str, Boundary | None], intact: Mapping[str, int], diameter: float) -> dict[str, float]:
+    """How far (m) before each side beyond which the ground goes on joints end, so that forces act on whole ground.
+
+    One diameter (m) before the disks whose bonds do not break, of which there are `intact` from each side, or `BRIDGE`.
+    """
+    artificial = [side for side, table in boundary.items() if table and table.is_artificial]
+    return {side: (1 + max(BRIDGE, intact.get(side, 0))) * diameter for side in artificial}
+
+
 def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the joints with all other tables; a table, or an entry, that is invalid on its own is None."""
     joints = dict(numbered("joint", tables["joint"]))
@@ -76,12 +91,8 @@ def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     yield from _taken_names(joints)
     if (material := tables["material"]) and (why := _unknown_law(material.law)):
         yield f"{place}: {why}"
-    if tables["layer"]:
-        yield f"{place}: is for ground of one material; leave out [[layer]]"
-    if any(table and table.quality_factor is not None for table in (material, *(tables["layer"] or ()))):
-        yield f"{place}: is for undamped ground; leave material.quality_factor out"
-    if any(hole and hole.stage != "before" for hole in tables["hole"]):
-        yield f'{place}: is for ground without an excavation; let holes have stage = "before"'
+    if any(hole and hole.stage == "run" for hole in tables["hole"]):
+        yield f'{place}: is for ground whose holes are there before the run; let them have stage = "before" or "after"'
     if packing := tables["packing"]:
         box, diameter = packing.box, 2.0 * packing.radius
         for place, joint in joints.items():
@@ -125,7 +136,7 @@ def _problems_at_sides(
     for side, table in sides.items():
         if not (reached.get(side) and table) or not _leaves_by(points, side, box):
             continue
-        if table.is_periodic or table.is_artificial or table.is_mirror:
+        if table.is_periodic or table.is_mirror:
             said = "beyond which the ground goes on without it; let it end inside"
             yield f'{place}.points: reaches boundary.{side}, "{table.type}", {said}'
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.joint import Joint
+from dembound.casefile.disks.joint import CORNERS, Joint, joint_ends
+from dembound.casefile.messages import numbered
 from dembound.disks.faces.cells import intervals
 from dembound.disks.material.packed_material import PackedMaterial
+from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
 
@@ -33,7 +35,8 @@ class Faces:
     joint : its table. split : number of faces on the left. disk : (m,) of each, among the scene's.
     ends : (m, 2, 2) m, ends of each face at the start. along : (m, 2) unit vector along the line.
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
-    removed : (2,) Pa/m, normal and shear stiffness per area of the contacts that it replaces. cut : number of these.
+    removed : (2, m) Pa/m, normal and shear stiffness per area of the contacts that it replaces, in the ground of each
+    face. cut : number of these. ended_at : sides before which it ends, as ground goes on beyond them.
     """
 
     joint: Joint
@@ -44,26 +47,54 @@ class Faces:
     side: np.ndarray
     removed: np.ndarray
     cut: int
+    ended_at: tuple[str, ...] = ()
 
     @property
     def length(self) -> float:
         """Length (m) of the faces on the left."""
         return float(np.hypot(*(self.ends[: self.split, 1] - self.ends[: self.split, 0]).T).sum())
 
+    def among(self, kept: np.ndarray, begin: int) -> Faces:
+        """The faces of disks that are left of a body: kept (k,) before, numbered from `begin` on, after others."""
+        number = np.full(len(self.side), -1)
+        number[kept] = begin + np.arange(len(kept))
+        left = self.left_of(kept)
+        side = np.concatenate([np.zeros(begin, np.int8), self.side[kept]])
+        each = (values[left] for values in (number[self.disk], self.ends, self.along))
+        split, removed = int(np.count_nonzero(left[: self.split])), self.removed[:, left]
+        return Faces(self.joint, split, *each, side, removed, self.cut, self.ended_at)
+
+    def left_of(self, kept: np.ndarray) -> np.ndarray:
+        """Whether each face (m,) is that of a disk among those kept (k,)."""
+        return np.isin(self.disk, kept)
+
+    @property
+    def has_two_sides(self) -> bool:
+        """Whether there are faces on both sides."""
+        return 0 < self.split < len(self.disk)
+
     @property
     def stiffness(self) -> np.ndarray:
-        """Normal and shear stiffness (2,) Pa/m of the faces: with the removed contacts in series, those asked for."""
-        asked = np.array([self.joint.kn, self.joint.ks])
+        """Normal and shear stiffness (2, m) Pa/m of the faces: with removed contacts in series, those asked for."""
+        asked = np.array([[self.joint.kn], [self.joint.ks]])
         found: np.ndarray = asked * self.removed / (asked + self.removed)
         return found
 
 
-def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: slice, box: Box) -> Faces:
+def in_series(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Stiffness between faces of these stiffnesses: each gives by half of what its own says."""
+    return np.where(one == other, one, 2.0 * one * other / (one + other))
+
+
+def faces_of(
+    joint: Joint, ground: PackedMaterial, assembly: Assembly, body: slice, box: Box, ends: Mapping[str, float]
+) -> Faces:
     """The faces of a joint in a body: the range of its disks, in a box left, bottom, right, top (m).
 
-    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it.
+    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it. ends : m,
+    how far from some sides the line ends, see `joint_ends`.
     """
-    line = _Line(np.array(joint.points), box)
+    line = _Line(np.array(joint.points), box, ends)
     distance, place = line.nearest(assembly.positions)
     within = np.zeros(len(distance), dtype=np.bool_)
     within[body] = (place[body] > 0.0) & (place[body] < line.length)
@@ -81,27 +112,52 @@ def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: sli
         own = np.flatnonzero(near & touching & np.where(side != 0, side == way, way * distance >= 0.0))
         found += line.faces(own, side, assembly.positions, assembly.radii)
         split = sum(len(each[0]) for each in found) if way == 1 else split
-    disk, ends, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    faces = Faces(joint, split, disk, ends, along, side.astype(np.int8), np.zeros(2), int(crossing.sum()))
-    if 0 < split < len(disk):
-        faces = replace(faces, removed=_stiffness(faces, ground, assembly, crossing))
-    return faces
+    disk, parts, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
+    faces = Faces(joint, split, disk, parts, along, side.astype(np.int8), np.zeros((2, len(disk))), int(crossing.sum()))
+    if not (faces.has_two_sides and crossing.any()):
+        return faces
+    there = [np.abs(parts - point).max(axis=2).min() < 2.0 * assembly.radii.max() for point in line.points[[0, -1]]]
+    ended_at = tuple(side for side, is_there in zip(line.ended_at, there, strict=True) if side and is_there)
+    return replace(faces, removed=_stiffness(faces, ground, assembly, crossing), ended_at=ended_at)
 
 
 def with_joints(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    begin: int,
+    before: tuple[Sequence[Faces], np.ndarray] | None = None,
 ) -> tuple[Assembly, tuple[Faces, ...]]:
     """An assembly without the contacts that the joints of a case replace, and their faces.
 
-    begin : number of the first disk of the body, which follows those of columns.
+    begin : number of the first disk of the body, which follows those of columns. before : the faces before an
+    excavation, and the disks (k,) left of the body then; those that are left stay as they were.
     """
-    body = slice(begin, len(assembly.radii))
-    faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box) for joint in case.joint)
+    faces = _found(case, ground, assembly, begin) if before is None else _left(*before, begin)
     if not faces:
         return assembly, ()
     crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
     left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
     return left, faces
+
+
+def _found(case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int) -> tuple[Faces, ...]:
+    """The faces of all joints of a case, see `with_joints`; raises CaseError for joints without any."""
+    body, ends = slice(begin, len(assembly.radii)), joint_ends(case.boundary, case.intact, 2.0 * case.packing.radius)
+    faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box, ends) for joint in case.joint)
+    if nowhere := [
+        place for (place, _), each in zip(numbered("joint", case.joint), faces, strict=True) if not each.cut
+    ]:
+        beside = "of the ground that is not beside a side beyond which ground goes on" if ends else "of the ground"
+        raise CaseError(
+            [f"{place}.points: has no disks on both sides, must cross a part {beside}" for place in nowhere]
+        )
+    return faces
+
+
+def _left(before: Sequence[Faces], kept: np.ndarray, begin: int) -> tuple[Faces, ...]:
+    """The faces that are left of joints, without joints of which one side is gone; see `Faces.among`."""
+    return tuple(each for each in (faces.among(kept, begin) for faces in before) if each.has_two_sides)
 
 
 def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:
@@ -138,7 +194,11 @@ def _by_contacts(assembly: Assembly, side: np.ndarray) -> np.ndarray:
 
 
 def _stiffness(faces: Faces, ground: PackedMaterial, assembly: Assembly, crossing: np.ndarray) -> np.ndarray:
-    """Normal and shear stiffness (2,) Pa/m, per area of the joint, of the contacts that cross it."""
+    """Normal and shear stiffness (2, m) Pa/m, per area, of the contacts that cross a joint in the ground of each face.
+
+    All of them count, with the springs of that ground: those of a part of the joint are too few for a mean. In damped
+    ground these are the springs at the frequency of its wave speeds.
+    """
     types = len(ground.brick.pairs)
     kind = assembly.contact_type[crossing] % types
     share = np.where(assembly.contact_type[crossing] // types % 2 == 1, 0.5, 1.0)
@@ -149,23 +209,38 @@ def _stiffness(faces: Faces, ground: PackedMaterial, assembly: Assembly, crossin
         at = np.searchsorted(faces.disk[order], assembly.pairs[crossing, 0]).clip(max=len(order) - 1)
         along = faces.along[order[at]]
     straight = np.sum(vectors * along, axis=1) ** 2 / np.sum(vectors**2, axis=1)
-    normal, shear = ground.springs.normal[kind] * share, ground.springs.shear[kind] * share
-    across = np.sum(normal * (1.0 - straight) + shear * straight)
-    return np.array([across, np.sum(normal * straight + shear * (1.0 - straight))]) / faces.length
+    zone, found = ground.zone_of(assembly.positions[faces.disk]), np.empty((2, len(faces.disk)))
+    for number in np.unique(zone):
+        springs = ground.zone_materials[number].stiffness
+        normal, shear = springs.normal[kind] * share, springs.shear[kind] * share
+        across = np.sum(normal * (1.0 - straight) + shear * straight)
+        along_it = np.sum(normal * straight + shear * (1.0 - straight))
+        found[:, zone == number] = np.array([[across], [along_it]]) / faces.length
+    return found
 
 
 class _Line:
-    """A polyline of points (k, 2) m in a box, of which ends outside are cut off; ``length`` (m) is what is left."""
+    """A polyline of points (k, 2) m in a box, of which ends outside are cut off; ``length`` (m) is what is left.
 
-    def __init__(self, points: np.ndarray, box: Box) -> None:
-        begin, end = points[0], points[-1]
-        self.open = [not _is_inside(point, box) for point in (begin, end)]
-        first = _entry(points[1], begin, box) if self.open[0] else begin
-        last = _entry(points[-2], end, box) if self.open[1] else end
+    ends : m, how far from some sides it ends. open : whether each end is at a side; ended_at : the side before which
+    each ends, or empty.
+    """
+
+    def __init__(self, points: np.ndarray, box: Box, ends: Mapping[str, float]) -> None:
+        near = [ends.get(side, 0.0) for side in CORNERS]
+        inner = box[0] + near[0], box[1] + near[1], box[2] - near[2], box[3] - near[3]
+        outer = [not _is_inside(point, inner) for point in points[[0, -1]]]
+        each = zip(outer, points[[1, -2]], points[[0, -1]], strict=True)
+        first, last = (_entry(inside, end, inner) if out else end for out, inside, end in each)
+        self.open = [out and not _is_inside(end, box) for out, end in zip(outer, (first, last), strict=True)]
+        self.ended_at = [
+            CORNERS[int(np.abs(end[[0, 1, 0, 1]] - inner).argmin())] if out and not is_open else ""
+            for out, is_open, end in zip(outer, self.open, (first, last), strict=True)
+        ]
         self.points = np.vstack([first, points[1:-1], last])
         steps = np.diff(self.points, axis=0)
         self.lengths = np.hypot(*steps.T)
-        self.along = steps / self.lengths[:, None]
+        self.along = steps / np.maximum(self.lengths, 1e-300)[:, None]  # 0 where all of it is cut off
         self.begins = np.concatenate([[0.0], np.cumsum(self.lengths)])
         self.length = float(self.begins[-1])
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from dembound.disks.faces.found import Faces
+from dembound.disks.faces.found import Faces, in_series
 
 Filling = Callable[[np.ndarray, np.ndarray], None]
 
@@ -44,5 +44,5 @@ def _springs_of(faces: Faces, positions: np.ndarray, slot: np.ndarray) -> tuple[
             arm = middle - positions[both[:, end]]
             modes[way, :, end, :2] = sign * own
             modes[way, :, end, 2] = sign * (arm[:, 0] * own[:, 1] - arm[:, 1] * own[:, 0])
-    stiffness = np.outer(faces.stiffness, length)
+    stiffness = length * in_series(faces.stiffness[:, one], faces.stiffness[:, faces.split + other])
     return np.tile(slot[both], (2, 1)), modes.reshape(-1, 2, 3), stiffness.ravel()

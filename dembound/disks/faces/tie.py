@@ -14,7 +14,7 @@ from dembound.errors import RunError
 from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
 from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
 from dembound.motion.part import Cracks, Tie, joined
-from dembound.motion.state import Arrays, Layout
+from dembound.motion.state import Arrays, Layout, arrays_of_owner
 
 ROOM = 8
 """Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other."""
@@ -51,8 +51,10 @@ class JointTie(Tie):
         self.faces, self._layout, self._count = faces, layout, layout.count
         self._nodes = np.unique(faces.disk)
         self._known: np.ndarray | None = None
-        diameter, speed = ground.brick.mean_diameter, float(np.sqrt(ground.material_tensor[0, 0] / ground.density))
-        kn, ks = faces.stiffness.tolist()
+        beside = [ground.zone_materials[zone] for zone in np.unique(ground.zone_of(positions[faces.disk]))]
+        speeds = [float(np.sqrt(each.material_tensor[0, 0] / each.density)) for each in beside]
+        impedance = min(each.density * speed for each, speed in zip(beside, speeds, strict=True))
+        diameter, speed = ground.brick.mean_diameter, min(speeds)
         normal = np.stack([-faces.along[:, 1], faces.along[:, 0]], axis=1)
         centre, first = positions[faces.disk], faces.ends[:, 0]
         height = np.sum((centre - first) * normal, axis=1)
@@ -61,12 +63,10 @@ class JointTie(Tie):
         room = ROOM * count
         self._bundle = JointFaces(
             law=JointLaw(
-                kn=kn,
-                ks=ks,
                 friction=float(joint.fric or 0.0),
                 tension=joint.ten,
                 cohesion=joint.coh,
-                dashpot=joint.dashpot * ground.density * speed,
+                dashpot=joint.dashpot * impedance,
                 step=time_step,
                 follows=1.0 - float(np.exp(-time_step * speed / (DELAY * diameter))),
                 fails=not joint.is_linear,
@@ -80,7 +80,8 @@ class JointTie(Tie):
             ends=faces.ends.reshape(-1, 4).copy(),
             along=faces.along,
             height=height,
-            closure=0.5 * pressure / kn,
+            stiffness=faces.stiffness,
+            closure=0.5 * pressure / faces.stiffness[0],
             pairs=_empty_pairs(room),
             spare=_empty_pairs(room),
             counts=np.zeros(4, dtype=np.int64),
@@ -102,9 +103,9 @@ class JointTie(Tie):
         found, pairs = slice(0, int(bundle.counts[PAIRS])), bundle.pairs
         pairs.length[found] = np.inf  # so that slip is kept
         one, other = pairs.first[found], pairs.second[found]
-        pairs.slip[found] = 0.5 * (shear[one] + shear[other]) / bundle.law.ks
+        pairs.slip[found] = 0.5 * (shear[one] + shear[other]) / pairs.ks[found]
         pairs.intact[found] = joint.ten > 0.0 or joint.coh > 0.0
-        pairs.bearing[found] = bundle.law.kn * (bundle.closure[one] + bundle.closure[other])
+        pairs.bearing[found] = pairs.kn[found] * (bundle.closure[one] + bundle.closure[other])
         push_faces(bundle, rest, rest)
         bundle.counts[STEPS] = 0
         bundle.lost[:] = 0.0
@@ -212,6 +213,27 @@ class JointTie(Tie):
 def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
     """The arrays of all joints, copied, by the names of joint and array."""
     return {f"{tie.name}/{name}": values.copy() for tie in ties for name, values in tie.saved_arrays().items()}
+
+
+def states_among(
+    states: Arrays, before: Sequence[Faces], after: Sequence[Faces], kept: np.ndarray
+) -> dict[str, np.ndarray]:
+    """The arrays of joints (`states_of`) of which only the faces of disks kept (k,) are left after an excavation."""
+    of_name, found = {each.joint.name: each for each in before}, {}
+    for faces in after:
+        owner = f"joint_{faces.joint.name}"
+        saved, left = arrays_of_owner(states, owner), of_name[faces.joint.name].left_of(kept)
+        number, room = np.cumsum(left) - 1, ROOM * len(faces.disk)
+        first, second = (saved[f"pair_{name}"][: saved["counts"][PAIRS]] for name in ("first", "second"))
+        chosen = np.flatnonzero(left[first] & left[second])
+        own = {"listed": saved["listed"][left], "events": np.zeros((room, 6))}
+        own["counts"] = np.array([len(chosen), 0, 0, len(chosen)])
+        for name, empty in _empty_pairs(room)._asdict().items():
+            values = saved[f"pair_{name}"][chosen]
+            empty[: len(chosen)] = number[values] if name in ("first", "second") else values
+            own[f"pair_{name}"] = empty
+        found |= {f"{owner}/{name}": values for name, values in own.items()}
+    return found
 
 
 def cracks_of(ties: Sequence[JointTie]) -> Cracks:

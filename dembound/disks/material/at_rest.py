@@ -304,7 +304,7 @@ def stressed(
     begin = assembly.positions[first] - brick.positions[assembly.brick_particle[first]]
     row = np.zeros(len(kind), np.int64) if at_rest.is_uniform else row.reshape(-1)[assembly.pairs[:, 0]]
     used, variant = np.unique(row * len(ground.pairings) + kind // types, return_inverse=True)
-    zones = [each.material for each in ground.zones] if isinstance(ground, LayeredGround) else [ground]
+    zones = ground.zone_materials
     linear = [] if at_rest.slides else [pair_forces(each) for each in zones]
     found, slips = np.empty((len(used), types, constants.shape[1])), np.zeros((len(used), 2, len(middle)))
     for own, slip, (number, pairing) in zip(

@@ -98,6 +98,11 @@ class LayeredGround(PackedMaterial):
         """Number of the zone, from the bottom, of disks at places (n, 2) m."""
         return _number(self.zones, self._rounding, places[:, 1])
 
+    @property
+    def zone_materials(self) -> tuple[PackedMaterial, ...]:
+        """The material of each zone, from the bottom."""
+        return tuple(zone.material for zone in self.zones)
+
     def layer_of(self, places: np.ndarray) -> np.ndarray:
         """Number of the layer, from the top, of disks at places (n, 2) m."""
         return np.array([zone.layer for zone in self.zones])[self.zone_of(places)]

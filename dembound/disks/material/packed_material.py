@@ -203,6 +203,11 @@ class PackedMaterial:
         """The materials of its layers, from the surface down, without corrections; of uniform ground itself."""
         return (self,)
 
+    @property
+    def zone_materials(self) -> tuple[PackedMaterial, ...]:
+        """The material of each zone, see `zone_of`."""
+        return (self,)
+
     def layer_of(self, places: np.ndarray) -> np.ndarray:
         """Number of the layer, from the top, of disks at places (n, 2) m."""
         return np.zeros(len(places), dtype=np.int64)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.disks.columns import COLUMNS
-from dembound.disks.faces.tie import cracks_of, states_of
+from dembound.disks.faces.tie import cracks_of, states_among, states_of
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
@@ -249,7 +249,9 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
     for name, pairs in contacts.items():
         there = before.contacts[name] if name in before.contacts else before.contacts[COLUMNS[0]]
         pairs.take_over_subset(there, scene.kept[scene.parts[name]] - there.nodes.start)
-    return Start(before.displacement[:, scene.kept], contacts, before.has_history)
+    assert scene.before is not None
+    joints = states_among(before.joints, scene.before.faces, scene.faces, scene.kept)
+    return Start(before.displacement[:, scene.kept], contacts, before.has_history, joints=joints)
 
 
 def _beside(scene: DiskScene, columns: Sequence[Start]) -> Start:

@@ -6,15 +6,13 @@ import numpy as np
 
 
 class JointLaw(NamedTuple):
-    """Constants of a joint: kn, ks Pa/m, friction, tension and cohesion Pa, dashpot Pa·s/m of sliding faces, step s.
+    """Constants of a joint: friction, tension and cohesion Pa, dashpot Pa·s/m of sliding faces, step s.
 
     follows : share of a change of pressure that friction follows in a step. fails : whether its faces part and slide.
     margin : m, by which faces on the list of pairs may lie apart. reach : m, gap of a pair above which it is not
     listed.
     """
 
-    kn: float
-    ks: float
     friction: float
     tension: float
     cohesion: float
@@ -29,16 +27,18 @@ class JointLaw(NamedTuple):
 class FacePairs(NamedTuple):
     """Pairs of faces that overlap or may soon, p places of which the first are in use; sorted by first, then second.
 
-    first, second : (p,) faces. intact : (p,) bool, whether the joint has its strength there; slides : (p,) bool, in the
-    last step. slip : (p,) m, shear displacement without stress. length : (p,) m, overlap in the last step; pressure,
-    shear, drag : (p,) Pa, its normal stress, positive if it pushes, its shear stress on the first face along its line,
-    and the normal stress of the dashpot; bearing : (p,) Pa, the pressure that
-    friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the line.
-    energy : (p,) J.
+    first, second : (p,) faces; kn, ks : (p,) Pa/m, their springs. intact : (p,) bool, whether the joint has its
+    strength there; slides : (p,) bool, in the last step. slip : (p,) m, shear displacement without stress. length :
+    (p,) m, overlap in the last step; pressure, shear, drag : (p,) Pa, its normal stress, positive if it pushes, its
+    shear stress on the first face along its line, and the normal stress of the dashpot; bearing : (p,) Pa, the pressure
+    that friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the
+    line. energy : (p,) J.
     """
 
     first: np.ndarray
     second: np.ndarray
+    kn: np.ndarray
+    ks: np.ndarray
     intact: np.ndarray
     slides: np.ndarray
     slip: np.ndarray
@@ -56,7 +56,8 @@ class JointFaces(NamedTuple):
 
     law : its constants. disk : (m,) int64 slots of their disks; line : (m,) theirs in the support table. centre :
     (m, 2), ends (m, 4) m, of the disk and x, y of both ends of the face at the start; along (m, 2) unit vector; height
-    (m,) m, of the centre from the face; closure (m,) m, by which the face is pressed in at the start.
+    (m,) m, of the centre from the face; stiffness (2, m) Pa/m, along n and t, of two such faces; closure (m,) m, by
+    which the face is pressed in at the start.
     pairs, spare : the pairs, and space to list them anew; counts (4,) int64 : pairs listed, steps done, events noted,
     and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed.
     now : (m, 4) m, ends in this step. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held
@@ -73,6 +74,7 @@ class JointFaces(NamedTuple):
     ends: np.ndarray
     along: np.ndarray
     height: np.ndarray
+    stiffness: np.ndarray
     closure: np.ndarray
     pairs: FacePairs
     spare: FacePairs

@@ -58,15 +58,19 @@ def joint_facts(scene: DiskScene) -> Entries:
 def _faces_fact(faces: Faces) -> str:
     """Length, and number of faces on both sides."""
     left, right = faces.split, len(faces.disk) - faces.split
-    return f"{with_unit(faces.length, 'm')}, faces of {left} and {right} disks in place of {faces.cut} contacts"
+    before = f", ends before {' and '.join(faces.ended_at)}" if faces.ended_at else ""
+    return f"{with_unit(faces.length, 'm')}, faces of {left} and {right} disks in place of {faces.cut} contacts{before}"
 
 
 def _stiffness_fact(faces: Faces) -> str:
     """The stiffness asked for, and that of the faces."""
     asked = faces.joint.kn, faces.joint.ks
-    names, own = ("kn", "ks"), faces.stiffness.tolist()
-    each = [f"{name} {with_unit(one, 'Pa/m')}" for name, one in zip(names, asked, strict=True)]
-    of_faces = " and ".join(with_unit(one, "Pa/m") for one in own)
+    each = [f"{name} {with_unit(one, 'Pa/m')}" for name, one in zip(("kn", "ks"), asked, strict=True)]
+    own = [
+        [with_unit(one, "Pa/m") for one in np.unique(values[[values.argmin(), values.argmax()]])]
+        for values in faces.stiffness
+    ]
+    of_faces = " and ".join(" to ".join(one) for one in own)
     return f"{', '.join(each)}, of the faces, with the contacts in series, {of_faces}"
 
 

@@ -40,6 +40,7 @@ SEVERAL = "contacts slid or opened while the body settled, so that its rest is o
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Reductions, the static stage, changes of law, broken bonds and the energy error."""
     facts = [*summary["reduced"], *summary["not_reduced"]]
+    unknown = summary.get("joints") or any("side" in each for each in summary.get("layers", ()))  # of errors
     if (static := summary["static"]) is not None:
         stages = [("static stage", static)]
         if (before := static["before"]) is not None:
@@ -48,16 +49,16 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         took = with_unit(summary["seconds"]["settle"], "s", 2)
         facts += [*lines[:-1], f"{lines[-1]}; {took}{' for all stages' if len(lines) > 1 else ''}"]
         if not static["elastic"]:
-            facts.append(f"{SEVERAL}: dembound estimate says how far they differ")
+            facts.append(SEVERAL if unknown else f"{SEVERAL}: dembound estimate says how far they differ")
     if summary["has_history"]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
-        facts += _broken(summary["cracks"], static)
+        facts += _broken(summary["cracks"], static, "" if unknown else ": see dembound estimate --repeat")
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
             facts.append(
                 f"largest error of the energy balance: {percent(error)}{_worked(summary.get('forces_at_rest'))}"
             )
     elif summary.get("joints"):
-        facts += _broken(summary["cracks"], static)
+        facts += _broken(summary["cracks"], static, "")
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
@@ -71,8 +72,11 @@ def _worked(found: Mapping[str, Any] | None) -> str:
     return f"; forces at rest did {percent(work['size'])} of what came in or was stored, on ground that left its side"
 
 
-def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:
-    """Numbers and modes of all broken bonds, without those of the static stages, which are reported with them."""
+def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None, more: str) -> list[str]:
+    """Numbers and modes of all broken bonds, without those of the static stages, which are reported with them.
+
+    more : where to find by how much draws differ, if they are many.
+    """
     count = cracks["tension"] + cracks["shear"]
     if count == 0:
         return []
@@ -80,7 +84,7 @@ def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list
     stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
     if [count] == stages:
         return [f"bonds broke only in the static stage {modes}"]
-    draw = ", one draw of many: see dembound estimate --repeat" if count - sum(stages) > MANY else ""
+    draw = f", one draw of many{more}" if count - sum(stages) > MANY else ""
     return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}{draw}"]
 
 

@@ -5,9 +5,10 @@ import pytest
 import tomli_w
 from small_cases import GRAINS
 
-from dembound.disks.faces.found import numbers_beside
+from dembound.disks.faces.found import in_series, numbers_beside
 from dembound.disks.faces.springs import filling_springs
 from dembound.disks.scene import build
+from dembound.errors import CaseError
 from dembound.kinds import loads
 
 LATTICE = {
@@ -34,8 +35,8 @@ def test_a_joint_between_two_rows_has_every_disk_of_both():
     # k_n/D and k_s/D of the contacts, in series with what is asked for
     springs = scene.ground.springs
     removed = np.array([springs.normal[0], springs.shear[0]]) / 0.5
-    np.testing.assert_allclose(faces.removed, removed)
-    np.testing.assert_allclose(1.0 / faces.stiffness, 1e-10 + 1.0 / removed)
+    np.testing.assert_allclose(faces.removed, removed[:, None].repeat(40, axis=1))
+    np.testing.assert_allclose(1.0 / faces.stiffness, 1e-10 + 1.0 / faces.removed)
     apart = scene.positions[scene.assembly.pairs]
     assert not ((apart[:, 0, 1] - 2.5) * (apart[:, 1, 1] - 2.5) < 0.0).any()
 
@@ -81,7 +82,7 @@ def test_springs_of_a_closed_joint_resist_opening_sliding_and_rolling():
     moved = np.zeros((3, scene.count))
     moved[0, upper], moved[1, upper] = 2e-3, 1e-3
     found = force_of(moved)
-    np.testing.assert_allclose(found[:2, upper].sum(axis=1), -10.0 * faces.stiffness[::-1] * [2e-3, 1e-3])
+    np.testing.assert_allclose(found[:2, upper].sum(axis=1), -10.0 * faces.stiffness[::-1, 0] * [2e-3, 1e-3])
     np.testing.assert_allclose(found[:2].sum(axis=1), 0.0, atol=1e-6)
     # a body that turns as a whole is not strained
     arm = scene.positions - [5.0, 2.5]
@@ -105,3 +106,35 @@ def test_disks_of_both_sides_never_meet(pattern):
     first, second = pairs.pairs
     sides = scene.faces[0].side
     assert not ((sides[first] * sides[second]) < 0).any()
+
+
+def test_in_layers_each_face_is_in_series_with_the_springs_of_its_own():
+    layers = {"layer": [{"bottom": 2.5, "p_wave_speed": 500.0}, {}]}
+    size = {"packing": LATTICE["packing"] | {"size": [1.0, 20.0]}}  # zones that correct the plane between are thinner
+    for points in ([[-1.0, 2.5], [2.0, 2.5]], [[0.5, -1.0], [0.5, 21.0]]):
+        scene = scene_with(points, LATTICE | size | layers)
+        (faces,), ground = scene.faces, scene.ground
+        zone = ground.zone_of(scene.positions[faces.disk])
+        each = [ground.zone_materials[number].stiffness for number in zone]
+        along = np.array([[one.normal[0], one.shear[0]] for one in each]).T / 0.5
+        np.testing.assert_allclose(faces.removed, along)
+        assert np.ptp(faces.removed[0]) > 0.5 * faces.removed[0].max()
+    # across the plane between layers springs are in series as those of contacts there
+    one, other = np.array([[1.0], [2.0]]), np.array([[3.0], [2.0]])
+    np.testing.assert_allclose(in_series(one, other), [[1.5], [2.0]])
+
+
+@pytest.mark.parametrize(("side", "ends_at"), [("viscous", ("left",)), ("free", ())])
+def test_before_a_side_beyond_which_ground_goes_on_it_ends(side, ends_at):
+    faces = scene_with([[-1.0, 2.5], [7.0, 2.5]], LATTICE | {"boundary": {"left": {"type": side}}}).faces[0]
+    assert faces.ended_at == ends_at
+    # three diameters, with the disks there that are intact
+    np.testing.assert_allclose(faces.ends[..., 0].min(), 1.5 if ends_at else 0.0, atol=1e-9)
+    np.testing.assert_allclose(faces.length, 5.5 if ends_at else 7.0)
+
+
+@pytest.mark.parametrize("points", [[[-1.0, 2.5], [1.0, 2.5]], [[3.0, 4.3], [7.0, 4.3]]])
+def test_a_joint_outside_of_the_ground_is_a_mistake(points):
+    air = [{"name": "air", "type": "rectangle", "corners": [-1.0, 3.0, 11.0, 6.0]}]
+    with pytest.raises(CaseError, match=r"joint\[1, joint\].points: has no disks on both sides"):
+        scene_with(points, LATTICE | {"boundary": {"left": {"type": "viscous"}}, "hole": air})
