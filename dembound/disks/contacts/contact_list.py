@@ -18,6 +18,7 @@ from dembound.disks.material.constants import BondFactors, brick_constants, limi
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
 from dembound.kernels.contacts import REFERENCE, SHEAR, TENSION
+from dembound.kernels.near import pairs_of
 from dembound.laws.law import AnyLimits, columns_of
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, Layout
@@ -92,6 +93,7 @@ class ContactList(RenewedList):
         if beside is not None:
             self._beside = np.zeros(self._slots.stop, dtype=np.int64)
             self._beside[self._slot] = beside
+        self._apart = np.zeros(0, dtype=np.int64)
         self.skin = SKIN * ground.brick.mean_diameter
         self.time_step = 0.0
         self._set_origin(np.zeros((2, len(assembly.radii))), np.full(len(assembly.radii), 0.5 * self.skin))
@@ -198,6 +200,12 @@ class ContactList(RenewedList):
         slots = other._slot[kept] - other._slots.start
         self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
+        if self._beside is not None and other._beside is not None:
+            self._beside[self._slot] = other._beside[other._slot[kept]]
+            both, image = pairs_of(other._apart, other._slots.stop)
+            one, two = (number[other.layout.node[each] - other.nodes.start] for each in both.T)
+            stays = (one >= 0) & (two >= 0)
+            self._apart = np.sort(self._keys_of(one[stays], two[stays], image[stays]))
         pairs = Pairs(first, second, other.image[left], other.of("contact_type")[left])
         history = ContactHistory(*(other.of(name)[left] for name in (*HISTORY, "place")))
         history = history._replace(rolled=other.of("rolled")[left] if self.rolls else None)
@@ -240,6 +248,8 @@ class ContactList(RenewedList):
         if self.rolls:
             saved["rolled"] = self.of("rolled")
         saved["retired"] = self.retired
+        if self._beside is not None:
+            saved["beside"], saved["apart"] = self._beside.copy(), self._apart.copy()
         saved["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
         return saved | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
@@ -255,6 +265,8 @@ class ContactList(RenewedList):
         self._set_origin(saved["origin"][:, slots], saved["skins"][slots])
         self.keeps_slip = bool(saved["keeps_slip"])
         self.retired = saved["retired"].copy()
+        if self._beside is not None:
+            self._beside, self._apart = saved["beside"].copy(), saved["apart"].copy()
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[saved[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, saved["image"], saved["contact_type"])

@@ -38,6 +38,7 @@ class RenewedList(PairList):
     _held: np.ndarray
     _left_out: int
     _beside: np.ndarray | None
+    _apart: np.ndarray
     _cracks: list[Cracks]
 
     def is_old(self, u: np.ndarray) -> bool:
@@ -93,8 +94,34 @@ class RenewedList(PairList):
         keys = near_keys((self.assembly.positions + moved)[ranks], reach, lengths, slot, usual)
         if self._beside is None:
             return keys
+        keys = keys[~self._across_joint(keys)]
+        return keys if len(self._apart) == 0 else np.setdiff1d(keys, self._apart, assume_unique=True)
+
+    def _across_joint(self, keys: np.ndarray) -> np.ndarray:
+        """Whether pairs of some keys (k,) have faces on both sides of a joint, so that their disks never touch."""
+        assert self._beside is not None
         one, other = self._beside[pairs_of(keys, self._slots.stop)[0].T]
-        return keys[(one != -other) | (one == 0)]
+        return (one == -other) & (one != 0)
+
+    def end_faces(self, displacement: np.ndarray, particles: np.ndarray) -> None:
+        """Let particles (k,) whose faces have ended touch those beyond their joint, once they overlap no more.
+
+        To be called at fixed steps, also without particles. displacement : (3, n) m.
+        """
+        if self._beside is None or len(particles) + len(self._apart) == 0:
+            return
+        moved = displacement[:2, self.nodes].T
+        beside, self._beside = self._beside, None
+        touching = self._near(moved, np.zeros(self._slots.stop - self._slots.start))
+        self._beside = beside
+        between = touching[self._across_joint(touching)]
+        self._beside[self._slot[particles]] = 0
+        ended = between[~self._across_joint(between)]
+        still = np.intersect1d(self._apart, touching, assume_unique=True)
+        changes = len(still) < len(self._apart) or len(particles) > 0
+        self._apart = np.union1d(still, ended)
+        if changes:
+            self.search(displacement)
 
     def _met(self, keys: np.ndarray, source: np.ndarray, *, shares: bool) -> Pairs:
         """Pairs (k,) of some keys that are not listed; contacts of the brick that had parted have their constants.

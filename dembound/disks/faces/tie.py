@@ -22,6 +22,9 @@ ROOM = 8
 MARGIN = 0.25
 """By how much faces may lie apart that are listed as pairs, over the mean diameter."""
 
+TURNED = 0.2
+"""Turn (rad) of a disk at which its face ends: it is no longer part of a block that slides."""
+
 DELAY = 1.0
 """Way of P waves, over the mean diameter, in the time in which friction follows a change of pressure."""
 
@@ -185,10 +188,39 @@ class JointTie(Tie):
         self._bundle.counts[EVENTS] = 0
         return found
 
+    def end_loose(self, displacement: np.ndarray, torn: np.ndarray) -> np.ndarray:
+        """End the faces of disks that are no longer parts of blocks along the joint, and return these disks (k,).
+
+        These are disks that have turned by `TURNED`, have lost all bonds, or have moved by a diameter to where no disk
+        has a face on the other side.
+
+        Parameters
+        ----------
+        displacement
+            (3, n) m and rad.
+        torn
+            (n,) bool, whether disks have lost all bonds.
+        """
+        faces, bundle = self.faces, self._bundle
+        there = np.flatnonzero((bundle.ends[:, :2] != bundle.ends[:, 2:]).any(axis=1))
+        disk = faces.disk[there]
+        loose = (np.abs(displacement[2, disk]) > TURNED) | torn[disk]
+        for own in (there < faces.split, there >= faces.split):
+            if not (own.any() and (~own).any()):
+                continue
+            place = faces.ends[there].mean(axis=1) + displacement[:2, disk].T
+            way = faces.along[there[own]].mean(axis=0)
+            other, along = place[~own] @ way, place[own] @ way
+            half = 0.5 * bundle.law.reach
+            left = (along < other.min() - half) | (along > other.max() + half)
+            loose[own] |= left & (np.hypot(*displacement[:2, disk[own]]) > bundle.law.reach)
+        bundle.ends[there[loose], 2:] = bundle.ends[there[loose], :2]  # without length they overlap no more
+        return disk[loose]
+
     def saved_arrays(self) -> Arrays:
-        """The pairs with their history, and events not yet recorded."""
+        """The pairs with their history, events not yet recorded, and the faces, of which some may have ended."""
         bundle = self._bundle
-        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("counts", "listed", "events")}
+        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("counts", "listed", "events", "ends")}
         return kept | {f"pair_{name}": values for name, values in bundle.pairs._asdict().items()}
 
     def restore(self, saved: Arrays) -> None:

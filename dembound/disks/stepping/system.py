@@ -20,6 +20,7 @@ from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.stepping.walls import WallPart
 from dembound.disks.surroundings.jump import JumpTie
 from dembound.kernels.common import BROKE, LAW_ENDS
+from dembound.kernels.contacts import INTACT, SHEAR, TENSION
 from dembound.kernels.follower import turn_forces
 from dembound.motion.state import Arrays, State, arrays_of_owner
 
@@ -160,6 +161,19 @@ class DiskSystem(RecordedDisks):
         super().react(why, steps, state)
         if looks:
             self.look_near_ties(state)
+            self._end_loose_faces(state)
+
+    def _end_loose_faces(self, state: State) -> None:
+        """Let disks that have left the blocks beside joints be as all others."""
+        if not self.joints:
+            return
+        displacement, body = state.displacement, self.contacts["body"]
+        torn = np.zeros(displacement.shape[1], dtype=np.bool_)
+        broken, intact = (np.isin(body.of("state"), states) for states in ((TENSION, SHEAR), (INTACT,)))
+        for chosen, value in ((broken, True), (intact, False)):
+            torn[np.concatenate([particles[chosen] for particles in body.pairs]) + body.nodes.start] = value
+        ended = np.unique(np.concatenate([joint.end_loose(displacement, torn) for joint in self.joints]))
+        body.end_faces(displacement, ended - body.nodes.start)
 
     @property
     def _held(self) -> np.ndarray | None:
@@ -177,7 +191,7 @@ class DiskSystem(RecordedDisks):
 
     def steps_to_look(self, step: int) -> int | None:
         """See `react`."""
-        looks = self.uses_history and (self.balance is not None or self.near_ties is not None)
+        looks = self.uses_history and (self.balance is not None or self.near_ties is not None or bool(self.joints))
         return LOOK - step % LOOK if looks else None
 
     def switch(self, state: State, fresh: bool = True) -> None:
