@@ -125,6 +125,16 @@ class Case:
         """Names of the waves by which walls move; by default there are none."""
         return set()
 
+    @property
+    def pull(self) -> float:
+        """The largest acceleration (m/s²) of steady loads; 0 by default."""
+        return 0.0
+
+    @property
+    def walls_stop(self) -> float:
+        """Time (s) from which all walls stand; by default there are none."""
+        return 0.0
+
 
 FREE = Free()
 
@@ -224,12 +234,11 @@ def run_problems(tables: Tables) -> Iterator[str]:
             yield f"output.{key}: is {interval:g}, {most}"
     if run.until == "silent" and not tables["monitor"]:
         yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
-    if run.silent_for is not None and run.silent_for > run.duration:
-        yield f"run.silent_for: is {run.silent_for:g}, {most}"
     if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
         yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
-    if run.peak_for is not None and run.peak_for > run.duration:
-        yield f"run.peak_for: is {run.peak_for:g}, {most}"
+    for key in ("silent_for", "peak_for", "rest_for"):
+        if (time := getattr(run, key)) is not None and time > run.duration:
+            yield f"run.{key}: is {time:g}, {most}"
 
 
 WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
