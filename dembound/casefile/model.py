@@ -12,7 +12,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, Motion
 from dembound.boundaries.free import Free
 from dembound.boundaries.platen import driven_components
-from dembound.casefile.messages import choices, show
+from dembound.casefile.messages import choices, numbered, show
 from dembound.casefile.tables import Chart, Output, Run, Sweep
 from dembound.casefile.types import WaveTable
 from dembound.errors import CaseError
@@ -215,7 +215,10 @@ def monitor_problems(tables: Tables) -> Iterator[str]:
 
 
 def never_estimated(tables: Tables) -> Iterator[str]:
-    """A request for errors at monitors in a case without monitors."""
+    """A request for errors at monitors in a case without monitors, or with means over polygons."""
+    for place, monitor in numbered("monitor", tables["monitor"] if tables["output"].estimate else ()):
+        if getattr(monitor, "points", None):
+            yield f"output.estimate: is true, but errors of means over polygons are not known; leave {place}.points out"
     if tables["output"].estimate and not tables["monitor"]:
         yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
 

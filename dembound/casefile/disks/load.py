@@ -202,3 +202,6 @@ class Monitor(Table):
         means="place",
         help="where; between equally near particles the lowest is taken, of these the leftmost",
     )
+    points: tuple[tuple[float, float], ...] | None = quantity(
+        None, unit="m", means="place", help="corners of a polygon, of whose particles the mean is recorded"
+    )
