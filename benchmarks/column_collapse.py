@@ -1,6 +1,6 @@
 """Columns of disks that collapse onto a rough floor, by a program of its own beside `dembound run`.
 
-    python benchmarks/column_collapse.py [--aspects 0.5 1 2 4] [--radius 0.05] [--seeds 1 2 3] [--picture FILE]
+    python benchmarks/column_collapse.py [--aspects 0.5 1 2 4] [--radius 0.05] [--picture FILE]
 
 A column of width 2 m and height 2a m stands between a wall and a gate, which is lifted at 20 m/s. The program is numpy
 alone: disks with linear springs, Coulomb's friction, resistance to rolling and dashpots, walls of segments, its own
@@ -24,6 +24,9 @@ WIDTH, DENSITY, EMOD, KRATIO, FRIC, RR_FRIC, DP = 2.0, 2000.0, 2e7, 2.0, 0.5, 1.
 
 GRAVITY, LIFT = 9.81, 20.0
 """Acceleration, m/s², and velocity of the gate, m/s."""
+
+COLUMN, COLUMNS = 0.25, 120
+"""Width (m) and number of the columns of a profile."""
 
 MOST = 10_000_000
 """More than there are disks, cells and segments: factor by which two numbers become one name."""
@@ -108,11 +111,6 @@ class Program:
         self.velocity[:2] += step * force[:2] / self.mass
         self.velocity[2] += step * force[2] / self.inertia
         self.place += step * self.velocity[:2]
-
-    @property
-    def kinetic(self) -> float:
-        """Kinetic energy, J/m."""
-        return 0.5 * float(np.sum(self.mass * self.velocity[:2] ** 2) + np.sum(self.inertia * self.velocity[2] ** 2))
 
     def _push_pairs(self, force: np.ndarray, step: float) -> None:
         first, second, rest, memory = self.contacts
@@ -218,8 +216,8 @@ class Deposit(NamedTuple):
     profile: np.ndarray
 
     @classmethod
-    def of(cls, begun: np.ndarray, place: np.ndarray, radius: np.ndarray, wide: float) -> "Deposit":
-        """The deposit of disks from places (2, n) m, in columns of a width (m); heights are area over width."""
+    def of(cls, begun: np.ndarray, place: np.ndarray, radius: np.ndarray) -> "Deposit":
+        """The deposit of disks from places (2, n) m; heights are area over the width of columns."""
         moved = np.hypot(*(place - begun)) > 2.0 * radius.mean()
         mass = radius[moved] ** 2
         right = moved & (place[0] > begun[0])
@@ -227,8 +225,9 @@ class Deposit(NamedTuple):
         order = np.argsort(x)
         share = np.cumsum(own[order]) / own.sum()
         x95, x99 = (float(x[order][np.searchsorted(share, each)]) for each in (0.95, 0.99))
-        columns = np.bincount(np.maximum(place[0] / wide, 0.0).astype(int), np.pi * radius**2, minlength=200)[:200]
-        return cls(x95, x99, np.average(place[:, moved], axis=1, weights=mass), columns / wide)
+        column = np.clip(place[0] / COLUMN, 0.0, COLUMNS - 1).astype(int)
+        heights = np.bincount(column, np.pi * radius**2, minlength=COLUMNS) / COLUMN
+        return cls(x95, x99, np.average(place[:, moved], axis=1, weights=mass), heights)
 
 
 def lines_of(aspect: float, radius: float) -> list[np.ndarray]:
@@ -242,10 +241,16 @@ def lines_of(aspect: float, radius: float) -> list[np.ndarray]:
     return [floor, *upright]
 
 
-def run_of(aspect: float, radius: float, seed: int, folder: Path) -> tuple[Program, Deposit, float, dict[str, Any]]:
-    """What `dembound run` makes of a column: the program in its first state, its deposit, step (s) and summary."""
-    import dembound
+def run_of(
+    aspect: float, radius: float, seed: int, folder: Path, duration: float = 20.0
+) -> tuple[Program, Deposit, float, dict[str, Any]]:
+    """What `dembound run` makes of a column: the program in its first state, its deposit, step (s) and summary.
+
+    It ends at rest, or after a duration (s).
+    """
     import h5py
+
+    import dembound
 
     floor, back, gate = (line.tolist() for line in lines_of(aspect, radius))
     size = [WIDTH, aspect * WIDTH]
@@ -260,7 +265,7 @@ def run_of(aspect: float, radius: float, seed: int, folder: Path) -> tuple[Progr
         ],
         load=[{"name": "weight", "acceleration": [0.0, -GRAVITY]}],
         static={"ratio": 1e-4},
-        run={"duration": 20.0, "until": "rest"},
+        run={"duration": duration} | ({"until": "rest"} if duration > 2.0 else {}),
         output={"pictures": False, "paraview": "none", "contacts": True},
     )
     found = dembound.run(case, folder)
@@ -272,60 +277,71 @@ def run_of(aspect: float, radius: float, seed: int, folder: Path) -> tuple[Progr
         pairs, shear = (file[f"snapshots/0000/contacts/{name}"][:] for name in ("particles", "shear_force"))
         step = float(file.attrs["time_step"])
     program = Program(packed, settled, radii, lines_of(aspect, radius), pairs, shear)
-    return program, Deposit.of(settled, end, radii, 0.25), step, found.summary
+    return program, Deposit.of(settled, end, radii), step, found.summary
 
 
 def rows(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """Rows of the table, of both programs."""
+    """Rows of the table: what the run gives, and in per cent how much less the other program gives."""
     for aspect in options.aspects:
         for seed in options.seeds:
             with tempfile.TemporaryDirectory() as folder:
                 program, own, step, summary = run_of(aspect, options.radius, seed, Path(folder))
-            begun = program.place.copy()
+            begun, disks, debris = program.place.copy(), len(program.radius), summary["debris"]
             for number in range(summary["steps"]):
                 program.advance(step * number, step)
-            other = Deposit.of(begun, program.place, program.radius, 0.25)
+            other = Deposit.of(begun, program.place, program.radius)
+            pairs = zip((own.x95, own.x99, *own.centre), (other.x95, other.x99, *other.centre), strict=True)
+            differences = [100.0 * (one / two - 1.0) for one, two in pairs]
+            ends = WIDTH + 1.2 * options.radius
             yield {
                 "aspect": aspect,
                 "seed": seed,
-                "disks": len(program.radius),
-                "time": summary["duration"],
-                "kinetic": summary["debris"]["kinetic"] / len(program.radius) / summary["debris"]["fall"],
-                "own": own,
-                "other": other,
-                "energy": program.kinetic,
-                "summary": summary["debris"],
+                "disks": disks,
+                "x99": own.x99,
+                "run_out": own.x99 / ends - 1.0,
+                "published": 1.2 * aspect if aspect < 2.3 else 1.9 * aspect ** (2.0 / 3.0),
+                **dict(zip(("dx95", "dx99", "dx", "dy"), differences, strict=True)),
+                "profile": 100.0 * float(np.abs(own.profile - other.profile).sum() / other.profile.sum()),
+                "rest": debris["kinetic"] / disks / debris["fall"],
+                "profiles": (own.profile.tolist(), other.profile.tolist()),
             }
 
 
-def show_rows(found: Sequence[dict[str, Any]]) -> None:
-    """Print both programs side by side."""
-    for row in found:
-        own, other = row["own"], row["other"]
-        ratio = [a / b - 1.0 for a, b in zip((own.x95, own.x99, *own.centre), (other.x95, other.x99, *other.centre))]
-        profile = np.abs(own.profile - other.profile).sum() / other.profile.sum()
-        print(
-            row["aspect"],
-            row["seed"],
-            row["disks"],
-            f"{row['time']:.3g}",
-            f"{row['kinetic']:.1e}",
-            f"{row['energy']:.2e}",
-            own.x95,
-            own.x99,
-            own.centre,
-            row["summary"]["right"],
-            [f"{100 * r:.2f}" for r in ratio],
-            f"{100 * profile:.1f}",
-            flush=True,
-        )
+def draw(found: Sequence[dict[str, Any]], path: Path) -> None:
+    """Profiles of both programs, and run-out beside the published scaling."""
+    import matplotlib.pyplot as plt
+
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.2), layout="constrained", width_ratios=(3, 2))
+    at = COLUMN * (np.arange(COLUMNS) + 0.5)
+    for number, row in enumerate(found):
+        own, other = row["profiles"]
+        left.step(at, own, where="mid", color=f"C{number}", label=f"a = {row['aspect']:g}")
+        left.step(at, other, where="mid", color=f"C{number}", ls=":")
+    left.plot([], [], "k:", label="other program")
+    left.set(xlabel="x (m)", ylabel="height (m)", xlim=(0.0, 1.1 * max(row["x99"] for row in found)))
+    left.legend()
+    aspects = np.geomspace(0.4, 6.0, 50)
+    right.plot(aspects, np.where(aspects < 2.3, 1.2 * aspects, 1.9 * aspects ** (2.0 / 3.0)), "k", label="Lube et al.")
+    right.plot([row["aspect"] for row in found], [row["run_out"] for row in found], "o", label="x99")
+    right.set(xscale="log", yscale="log", xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
+    right.legend()
+    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--aspects", nargs="+", type=float, default=[0.5, 1.0, 2.0, 4.0])
+    parser.add_argument("--aspects", nargs="+", type=float, default=[0.5, 1.0, 2.0, 4.0], help="heights over width")
     parser.add_argument("--seeds", nargs="+", type=int, default=[1])
-    parser.add_argument("--radius", type=float, default=0.05)
+    parser.add_argument("--radius", type=float, default=0.05, help="mean radius of the disks, m")
+    parser.add_argument("--picture", type=Path, help="file of the picture")
+    parser.add_argument("--json", type=Path, default=Path("results/benchmarks/column_collapse.json"))
+    small_option(parser, aspects=[0.5], radius=0.2)
     options = parser.parse_args()
-    for row in rows(options):
-        show_rows([row])
+    found = list(rows(options))
+    columns = {"a": "{aspect:g}", "seed": "{seed}", "disks": "{disks:,}", "x99, m": "{x99:.3f}"}
+    columns |= {"(x99 − r₀)/r₀": "{run_out:.2f}", "published": "{published:.2f}"}
+    columns |= {"x95, %": "{dx95:.2f}", "x99, %": "{dx99:.2f}", "x, %": "{dx:.2f}", "y, %": "{dy:.2f}"}
+    show("Columns", columns | {"profile, %": "{profile:.1f}", "kinetic a disk": "{rest:.1e}"}, found)
+    write(options.json, {"machine": machine(), "rows": found})
+    if options.picture:
+        draw(found, options.picture)
