@@ -65,7 +65,7 @@ TORN: Tables = {
 
 DROPPED: Tables = {
     "packing": {"pattern": "A", "size": [2.0, 2.0], "radius": 0.25},
-    "material": {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 1e7, "pb_ten": 3e4, "pb_coh": 1e5}
+    "material": {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 1e7, "pb_ten": 1e9, "pb_coh": 1e9}
     | {"dp_nratio": 0.3, "fric": 0.5},
     "wall": [
         {"name": "floor", "points": [[-9.0, 2.0], [0.4, -1.0], [2.2, -1.0], [9.0, 2.0]], "fric": 0.5, "dp_nratio": 0.3}
@@ -75,7 +75,7 @@ DROPPED: Tables = {
     "run": {"duration": 20.0, "until": "rest", "rest_for": 0.3},
     "output": {"pictures": False, "paraview": "none", "snapshots": 40},
 }
-"""A weak block of 16 disks that falls 1 m onto a trough, and partly breaks."""
+"""A strong block of 16 disks that falls 1 m into a trough."""
 
 SOIL: Tables = {
     "packing": {"pattern": "A", "radius": 0.125, "bricks": [2, 50]},

@@ -31,12 +31,13 @@ def scene() -> DiskScene:
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_run_out_is_of_the_mass_that_moved_by_more_than_a_diameter(scene: DiskScene, sign: float) -> None:
-    """The upper ten of 20 rows move by 20 m and 3 m down, the lower ones by 0.4 m; of 30 columns of the moved mass the
+    """The upper ten of 20 rows move by 20 m and 3 m down, the lower ones by 0.4 m.
 
-    29th from behind has its 95 %, the last one its 99 %. The crest is at 14.75 m (0.25 m) and the uppermost row, 9.75 m
-    high, the front the mean height of rows 5.25 to 9.75 m less 3 m. A disk that fell far below is of no mass.
+    Of 30 columns of the moved mass the 29th from behind has its 95 %, the last one its 99 %. The crest is at 14.75 m
+    (0.25 m) and the uppermost row, 9.75 m high, the front the mean height of rows 5.25 to 9.75 m less 3 m. A disk that
+    fell far below is of no mass.
     """
-    x, y = scene.positions.T
+    y = scene.positions[:, 1]
     upper = y > 5.0
     moved = np.where(upper[:, None], [sign * 20.0, -3.0], [0.4, 0.0])
     lost = np.flatnonzero(~upper)[7]
@@ -81,7 +82,7 @@ def test_fragments_are_pieces_of_intact_bonds_that_no_side_holds(scene: DiskScen
     assert found.describe() == pytest.approx(expected, rel=1e-12)
     free = Debris(build(small(LOOSE))).fragments(pairs[:0])
     assert free.disks.tolist() == [600]  # which no side holds
-    sand = {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 0.0}
+    sand = {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 0.0, "fric": 0.5, "kratio": 2.0}
     assert Debris(build(small(STOOD | {"material": sand}))).fragments(pairs) is None
 
 
