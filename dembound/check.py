@@ -9,7 +9,7 @@ from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, RunError
 from dembound.machine import memory_here
-from dembound.motion.endings import peak_rule, silent_rule
+from dembound.motion.endings import peak_rule, rest_rule, silent_rule
 from dembound.motion.kind import Beginning, Plan, echoes
 from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.trackers import Clock
@@ -97,6 +97,10 @@ def _until(planned: Plan) -> str:
             f", or until the forces on all driven sides are below {percent(past.share, 3)} of their peaks for "
             f"{with_unit(past.hold, 's')}"
         )
+    if until == "rest":
+        rest = rest_rule(planned.scene, sources)
+        hold, earliest = with_unit(rest.hold, "s"), with_unit(rest.earliest, "s")
+        return f", or until what fell has been at rest for {hold}, after {earliest}"
     rule = silent_rule(planned.scene, sources)
     return (
         f", or until all monitors are below {percent(rule.level, 3)} of their peaks for {with_unit(rule.hold, 's')}, "

@@ -63,6 +63,20 @@ TORN: Tables = {
 }
 """Changes of `PUSHED` by which its end is torn off, but not at once: more than ten bonds break."""
 
+DROPPED: Tables = {
+    "packing": {"pattern": "A", "size": [2.0, 2.0], "radius": 0.25},
+    "material": {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 1e7, "pb_ten": 1e9, "pb_coh": 1e9}
+    | {"dp_nratio": 0.3, "fric": 0.5},
+    "wall": [
+        {"name": "floor", "points": [[-9.0, 2.0], [0.4, -1.0], [2.2, -1.0], [9.0, 2.0]], "fric": 0.5, "dp_nratio": 0.3}
+    ],
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+    "monitor": [{"name": "upper", "points": [[0.0, 1.2], [2.0, 1.2], [2.0, 2.0], [0.0, 2.0]]}],
+    "run": {"duration": 20.0, "until": "rest", "rest_for": 0.3},
+    "output": {"pictures": False, "paraview": "none", "snapshots": 40},
+}
+"""A strong block of 16 disks that falls 1 m into a trough."""
+
 SOIL: Tables = {
     "packing": {"pattern": "A", "radius": 0.125, "bricks": [2, 50]},
     "material": {"density": 2300.0, "s_wave_speed": 700.0, "fric": 0.5, "kratio": 2.0, "pb_kratio": 2.0},

@@ -12,7 +12,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, Motion
 from dembound.boundaries.free import Free
 from dembound.boundaries.platen import driven_components
-from dembound.casefile.messages import choices, show
+from dembound.casefile.messages import choices, numbered, show
 from dembound.casefile.tables import Chart, Output, Run, Sweep
 from dembound.casefile.types import WaveTable
 from dembound.errors import CaseError
@@ -125,6 +125,16 @@ class Case:
         """Names of the waves by which walls move; by default there are none."""
         return set()
 
+    @property
+    def pull(self) -> float:
+        """The largest acceleration (m/s²) of steady loads; 0 by default."""
+        return 0.0
+
+    @property
+    def walls_stop(self) -> float:
+        """Time (s) from which all walls stand; by default there are none."""
+        return 0.0
+
 
 FREE = Free()
 
@@ -205,7 +215,10 @@ def monitor_problems(tables: Tables) -> Iterator[str]:
 
 
 def never_estimated(tables: Tables) -> Iterator[str]:
-    """A request for errors at monitors in a case without monitors."""
+    """A request for errors at monitors in a case without monitors, or with means over polygons."""
+    for place, monitor in numbered("monitor", tables["monitor"] if tables["output"].estimate else ()):
+        if getattr(monitor, "points", None):
+            yield f"output.estimate: is true, but errors of means over polygons are not known; leave {place}.points out"
     if tables["output"].estimate and not tables["monitor"]:
         yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
 
@@ -224,12 +237,11 @@ def run_problems(tables: Tables) -> Iterator[str]:
             yield f"output.{key}: is {interval:g}, {most}"
     if run.until == "silent" and not tables["monitor"]:
         yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
-    if run.silent_for is not None and run.silent_for > run.duration:
-        yield f"run.silent_for: is {run.silent_for:g}, {most}"
     if run.until == "peak" and None not in sides.values() and not any(True for _ in driven_components(sides)):
         yield 'run.until: is "peak", but no side prescribes the motion of a wave; give one type = "velocity"'
-    if run.peak_for is not None and run.peak_for > run.duration:
-        yield f"run.peak_for: is {run.peak_for:g}, {most}"
+    for key in ("silent_for", "peak_for", "rest_for"):
+        if (time := getattr(run, key)) is not None and time > run.duration:
+            yield f"run.{key}: is {time:g}, {most}"
 
 
 WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)

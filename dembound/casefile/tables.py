@@ -53,7 +53,7 @@ Vary = Annotated[dict[str, Any], AfterValidator(_lists)]
 """Dotted key -> list of values; in a file a range may stand in place of a list."""
 
 
-ENDING_KEYS = {"silent": ("silent_level", "silent_for"), "peak": ("peak_share", "peak_for")}
+ENDING_KEYS = {"silent": ("silent_level", "silent_for"), "peak": ("peak_share", "peak_for"), "rest": ("rest_for",)}
 """Ends before the duration, and the keys that belong to each."""
 
 ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
@@ -73,10 +73,10 @@ class Run(Table):
     checkpoint: float = quantity(
         300.0, unit="s", means="wall time", help="wall time between checkpoints; 0: none", ge=0.0
     )
-    until: Literal["duration", "silent", "peak"] = quantity(
+    until: Literal["duration", "silent", "peak", "rest"] = quantity(
         "duration",
-        help='when it ends: "duration"; "silent", if all monitors are so before; "peak", if '
-        "the forces on all sides that a wave moves have passed their peaks",
+        help='when it ends: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a '
+        'wave moves have passed their peaks; "rest": of disks, what fell is at rest',
     )
     silent_level: float = quantity(
         1e-3,
@@ -105,6 +105,13 @@ class Run(Table):
         help="time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice",
         gt=0.0,
     )
+    rest_for: float | None = quantity(
+        None,
+        unit="s",
+        help="time for which the kinetic energy must be below 1e-3 of that of the fall; absent: that of a free fall "
+        "from the height of the body",
+        gt=0.0,
+    )
 
     @property
     def is_test(self) -> bool:
@@ -113,7 +120,7 @@ class Run(Table):
 
     def lasting(self, duration: float) -> Self:
         """The run with another duration (s), without times of an earlier end that are longer than it."""
-        times = [key for key in ("silent_for", "peak_for") if (getattr(self, key) or 0.0) > duration]
+        times = [key for key in ("silent_for", "peak_for", "rest_for") if (getattr(self, key) or 0.0) > duration]
         return self.model_copy(update={"duration": duration, **dict.fromkeys(times)})
 
     @model_validator(mode="after")

@@ -309,11 +309,16 @@ class DiskBody(Scene):
         return moves
 
     @cached_property
+    def bonds(self) -> np.ndarray:
+        """The pairs (b, 2) of disks that are bonded as built."""
+        constants = brick_constants(self.inside, gaps_close=False, locked_in=0.0)
+        stiff = self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0
+        return self.assembly.pairs[stiff]
+
+    @cached_property
     def bonded(self) -> np.ndarray:
         """Whether each disk (m,) has a bond as built."""
-        constants = brick_constants(self.inside, gaps_close=False, locked_in=0.0)
-        bonds = self.assembly.pairs[self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0]
-        return np.bincount(bonds.ravel(), minlength=self.disk_count) > 0
+        return np.bincount(self.bonds.ravel(), minlength=self.disk_count) > 0
 
     @property
     def bearing(self) -> Springs | None:

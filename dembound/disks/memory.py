@@ -11,6 +11,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
@@ -144,7 +146,14 @@ def _expected_probes(case: DiskCase) -> int:
     of_element = (case.outside.order + 1) ** 2 + twin
     of_body = [is_within(case.packing.box, monitor.position, case.packing.span) for monitor in case.monitor]
     each = [1 if is_inside else of_element for is_inside in of_body]
+    each += [math.ceil(area(m.points) / (4.0 * case.packing.radius**2)) for m in case.monitor if m.points]
     return sum(each) + twin * len(each)
+
+
+def area(points: Sequence[tuple[float, float]]) -> float:
+    """Area (m²) of a polygon."""
+    x, y = np.transpose(points)
+    return 0.5 * abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
 
 
 def must_fit_here(case: DiskCase) -> None:

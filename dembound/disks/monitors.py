@@ -20,6 +20,7 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import reach
 from dembound.casefile.disks.load import FREE_FIELD
+from dembound.casefile.messages import numbered
 from dembound.continuum.interpolation import interpolation, slopes
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.packing_waves import INDEX
@@ -27,7 +28,8 @@ from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import UnlikeWaves
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
-from dembound.motion.scene import Between
+from dembound.holes.polygon import Polygon
+from dembound.motion.scene import Between, Mean
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, columns_end, nearest_in_column
 from dembound.packings.tiling import Assembly, disks_around
@@ -76,7 +78,8 @@ def monitors_of(
         around.check()
         for monitor in case.monitor:
             name = monitor.name
-            if (beyond := around.disk_at(monitor.position, disks[name][0])) is None:
+            beyond = None if monitor.points else around.disk_at(monitor.position, disks[name][0])
+            if beyond is None:
                 continue
             disks[name] = place, kind = beyond
             if seams:
@@ -94,7 +97,27 @@ def monitors_of(
                 there, twins.get(name), _moving(waves, ground, *disk, beside=beside)
             )
         twins = nodes | twins
+    between |= _means(case, ground, assembly, first)
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between
+
+
+def _means(case: DiskCase, ground: PackedMaterial, assembly: Assembly, first: int) -> dict[str, Between]:
+    """The monitors of means over polygons; first : number of the first disk of the body.
+
+    Raises CaseError for a polygon without a disk.
+    """
+    found: dict[str, Between] = {}
+    masses = ground.disk_masses(assembly)[0]
+    for place, monitor in numbered("monitor", case.monitor):
+        if monitor.points is None:
+            continue
+        shape = Polygon(type="polygon", name=monitor.name, points=monitor.points)
+        disks = first + np.flatnonzero(shape.depth(assembly.positions[first:]) >= 0.0)
+        if len(disks) == 0:
+            raise CaseError([f"{place}.points: no particle of the body is centred in the polygon"])
+        share = masses[disks] / masses[disks].sum()
+        found[monitor.name] = Mean(share @ assembly.positions[disks], disks, share)
+    return found
 
 
 Moving = Callable[[np.ndarray], np.ndarray]

@@ -21,10 +21,17 @@ STEPS = 1024
 """Steps between two looks, which take less time than one step: a multiple of those at which the loop returns anyway."""
 
 
-class FarDisks(Every):
-    """Counts the disks that touch nothing and have fallen below the base by more than the height of the scene.
+def far_below(scene: DiskScene) -> float:
+    """Height y (m) below the base by the height of the scene, below which disks count as fallen out of it.
 
     Where walls reach further down than the base, their lowest point stands in for it.
+    """
+    _, low, _, high = scene.case.box
+    return min([low, *(float(line[:, 1].min()) for line in scene.walls.values())]) - (high - low)
+
+
+class FarDisks(Every):
+    """Counts the disks that touch nothing and have fallen below the base by more than the height of the scene.
 
     Parameters
     ----------
@@ -39,10 +46,7 @@ class FarDisks(Every):
 
     def __init__(self, scene: DiskScene, *, retires: bool) -> None:
         super().__init__(STEPS)
-        _, low, _, high = scene.case.box
-        self._height = scene.assembly.positions[:, 1]
-        lines = [low, *(float(line[:, 1].min()) for line in scene.walls.values())]
-        self._depth = min(lines) - (high - low)
+        self._height, self._depth = scene.assembly.positions[:, 1], far_below(scene)
         self._retires = retires
         self._moved_by_sides = np.isin(np.arange(scene.disk_count), scene.supports.node)
         self.far = np.zeros(scene.disk_count, dtype=np.bool_)

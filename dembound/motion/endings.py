@@ -1,4 +1,4 @@
-"""Ends of a run before its duration: past the peaks of forces on driven sides, or once all monitors are silent."""
+"""Ends of a run before its duration: past the peaks of forces on driven sides, all monitors silent, debris at rest."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -88,6 +88,28 @@ class Peak(Tracker):
         """Restore the arrays returned by `saved_arrays`."""
         super().restore(saved)
         self._first, self._peaks, self._high = saved["first"].copy(), saved["peaks"].copy(), int(saved["high"])
+
+
+@dataclass(frozen=True)
+class RestRule:
+    """The rule for the end of a run: what fell has been at rest for a time.
+
+    hold : s, for which it must be. earliest : s, from which this counts.
+    """
+
+    hold: float
+    earliest: float
+
+
+def rest_rule(scene: Scene, sources: Sequence[Source]) -> RestRule:
+    """The rule for a case with ``until = "rest"``; scene : the whole one, with its sources and a steady acceleration.
+
+    Rest counts from when all waves have entered and all walls stand. By default it must last as long as a free fall
+    from the height of the body, in which whatever hangs loose would have fallen.
+    """
+    over = [source.over if np.isfinite(source.over) else source.start for source in sources]
+    hold = scene.case.run.rest_for or float(np.sqrt(2.0 * scene.size[1] / scene.case.pull))
+    return RestRule(hold, max([scene.case.walls_stop, *over]))
 
 
 @dataclass(frozen=True)

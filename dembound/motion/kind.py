@@ -25,6 +25,7 @@ from dembound.table import Box
 from dembound.words import Entries
 
 if TYPE_CHECKING:
+    import h5py
     import meshio
     from matplotlib.figure import Figure
 
@@ -275,6 +276,13 @@ class Kind(ABC, Generic[C, S]):
     @abstractmethod
     def summarise(self, scene: S, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
         """Additional entries of a summary for this kind of body: plain JSON values, SI units."""
+
+    def derived(self, scene: S, file: h5py.File) -> dict[str, tuple[np.ndarray, str]]:
+        """What follows from the snapshots and cracks of the open record of a run, by name: values and unit.
+
+        By default nothing.
+        """
+        return {}
 
     @abstractmethod
     def work(self, run: Run) -> int:

@@ -71,6 +71,17 @@ class Between:
         return moved.reshape(-1, 6)
 
 
+class Mean(Between):
+    """The mean motion of nodes, at their centre; share : (k,) of each node, of sum 1, for all components."""
+
+    def motion(self, record: np.ndarray) -> np.ndarray:
+        """The weighted sum (s, 6) over the nodes' displacements and velocities (s, k, 6) in s steps, in their order."""
+        moved = np.zeros((len(record), 6))
+        for k, share in enumerate(self.share):
+            moved += share * record[:, k]
+        return moved
+
+
 RUNAWAY = 1e4
 """Factor by which the speed of a node may exceed that of all waves together: resonance gives factors of ten."""
 

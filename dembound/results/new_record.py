@@ -46,6 +46,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law or method used and time (l,) it began at
     static/                 attributes: results of the static stage, if there was one; displacement (n, 3) at its end
+    debris/                 of disks with a history-dependent law, after the run: the columns of
+                            `kinds.disks.debris.debris_columns`
     static/before/          the same before an excavation, of the particles that are left by it
 """
 
@@ -80,6 +82,9 @@ MOTION = ("displacement", "velocity")
 
 UNBALANCED = "unbalanced"
 """Name of the dataset of the snapshot of a static stage that stalled."""
+
+DERIVED = "debris"
+"""Group of what follows from snapshots and cracks, written when a run is complete."""
 
 NO_PARTICLE = -1
 """Number of the particle of a monitor in a continuum."""
@@ -250,6 +255,13 @@ def _make_energy(file: h5py.File, scene: Scene, sides: Sequence[str]) -> None:
     make(file.create_group("energy"), columns)
     for side in sides:
         make(file.create_group(f"energy/sides/{side}"), [(name, (), "f8", unit) for name in SideEntry._fields])
+
+
+def write_derived(file: h5py.File, columns: Mapping[str, tuple[np.ndarray, str]]) -> None:
+    """Write what follows from snapshots and cracks, values and unit by path in `DERIVED`, in place of what is there."""
+    file.pop(DERIVED, None)
+    for name, (values, unit) in columns.items():
+        write(file.require_group(DERIVED), name, values, unit)
 
 
 def write_inputs(file: h5py.File, files: Mapping[str, str]) -> None:

@@ -21,6 +21,7 @@ from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
 from dembound.results.new_record import (
+    DERIVED,
     DISPLACEMENT_UNIT,
     SIDE_HISTORY,
     UNBALANCED,
@@ -55,8 +56,7 @@ class Recorder:
     path : file to create.
     run : the run to record, with all nodes of its whole scene; its probes are those of the scene.
     step_limit : stability limit in s, written to the record.
-    interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger; None:
-    without a ledger. stages : before the run.
+    interval : time between two history samples in s; 0: every step. ledger : of the run, or None. stages : before it.
     counts : the result of `counts` in a run that this one continues; the file is then not created, but appended to.
     None: a new file.
     """
@@ -261,6 +261,7 @@ class Recorder:
             _cut(datasets_of(self.file[name]), counts[name])
         for side in self.file.get("energy/sides", {}).values():
             _cut(side, counts["energy"])
+        self.file.pop(DERIVED, None)
         for snapshot in snapshots_of(self.file)[counts["snapshots"] :]:
             del self.file[snapshot.name]
         self.file.attrs["complete"] = False

@@ -27,6 +27,13 @@ if TYPE_CHECKING:
 END = ("time", "displacement", "velocity")
 """What is written of the motion of a monitor at the end of a run."""
 
+ENDS = {
+    "silent": "all monitors silent",
+    "peak": "the force on the driven sides past its peak",
+    "rest": "what fell at rest",
+}
+"""Why a run ended early, in words."""
+
 WORTH_SAYING = 1e6
 """Bytes of a snapshot below which leaving it out saves too little."""
 
@@ -73,8 +80,7 @@ def end_in_words(summary: Mapping[str, Any]) -> list[str]:
     """One sentence on a run that ended early; none for a whole run."""
     if (ended := summary["ended"]) is None:
         return []
-    why = "all monitors silent" if ended["why"] == "silent" else "the force on the driven sides past its peak"
-    return [f"ended at {ended['time']:.4g} s, {why}: {100.0 * ended['saved']:.0f} % of the steps saved"]
+    return [f"ended at {ended['time']:.4g} s, {ENDS[ended['why']]}: {100.0 * ended['saved']:.0f} % of the steps saved"]
 
 
 def _fields_left_out(planned: Plan) -> list[str]:

@@ -21,6 +21,7 @@ from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import FOLDER as STAGES
 from dembound.results.checkpoint import Checkpoints, KeptStages, facts_of
 from dembound.results.folder import Folder
+from dembound.results.new_record import write_derived
 from dembound.results.reader import open_record, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
@@ -255,6 +256,8 @@ class _Job:
                 with simulation.a_step_ahead() as motion:
                     snapshots.complete()
                     recorder.end(time, motion)
+                recorder.flush(durable=False)
+                write_derived(recorder.file, planned.kind.derived(planned.scene, recorder.file))
         return simulation, beginning
 
     def _begin(self, planned: Plan, partial: Path) -> Beginning:

@@ -189,7 +189,7 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         side_stride=steps_between_samples(planned),
     )
     until = scene.case.run.until
-    if until != "duration":
+    if until in ("silent", "peak"):
         sources = planned.kind.sources(planned.scene)
         if until == "silent":
             simulation.track(Silence(silent_rule(planned.scene, sources), planned.time_step))

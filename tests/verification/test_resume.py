@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from recorded import contents
-from small_cases import GRAINS, PULLED, small
+from small_cases import DROPPED, GRAINS, PULLED, small
 
 from dembound.check import check
 from dembound.errors import CaseError
@@ -61,6 +61,7 @@ CASES = {
     "free field that breaks": DISKS
     | {"packing": LATTICE, "material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
     "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
+    "falls and comes to rest": DROPPED,
     "monitors and loads in a continuum": DISKS
     | {
         "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},

@@ -74,8 +74,10 @@ def _best(given: Proposal, case: DiskCase, searches: Sequence[Search], bound: fl
 
 
 def _require_linear(case: DiskCase) -> None:
-    """Raise CaseError where no formula and no companion knows errors: by the law, and beside walls and joints."""
+    """Raise CaseError where nothing knows errors: by the law, beside walls and joints, and of means over polygons."""
     require_linear(case.material.law)
+    if means := [monitor.name for monitor in case.monitor if monitor.points]:
+        raise CaseError([f"monitor.{means[0]}.points: errors are known only at single places"], case.name)
     if case.wall:
         raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)
     for key in ("joint", "group"):

@@ -1,11 +1,15 @@
 """The ``[[load]]`` and ``[[monitor]]`` tables of disks."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, model_validator
 
 from dembound.boundaries.edge import normal_axis
+from dembound.casefile.disks.targets import with_history
+from dembound.casefile.messages import numbered
+from dembound.casefile.types import LAWS
 from dembound.table import Box, FileName, Table, quantity
 
 Vector = tuple[float, float]
@@ -152,6 +156,26 @@ def gravity(loads: Iterable[Load | None]) -> list[float]:
     return [load.vector[1] for load in everywhere if load.wave is None]
 
 
+def rest_problems(tables: Mapping[str, Any]) -> Iterator[str]:
+    """What a run until rest lacks: contacts that open, and a weight by which something falls."""
+    run, material, loads = tables["run"], tables["material"], tables["load"]
+    if not run or run.until != "rest" or None in loads:
+        return
+    if material and not LAWS[material.law].has_history:
+        yield f'run.until: is "rest", but under law = "{material.law}" nothing falls; give law = {with_history()}'
+    if pull(loads) == 0.0:
+        yield 'run.until: is "rest", but no [[load]] without a wave has an acceleration by which disks fall; give one'
+    for place, wall in numbered("wall", tables["wall"]):
+        if wall.velocity is not None and wall.until is None:
+            yield f'{place}.until: is missing; with run.until = "rest" walls must come to a stop'
+
+
+def pull(loads: Iterable[Load]) -> float:
+    """The largest acceleration (m/s²) of the steady loads; 0 without one."""
+    steady = (load.acceleration for load in loads if load.acceleration is not None and load.wave is None)
+    return max((math.hypot(*each) for each in steady), default=0.0)
+
+
 FREE_FIELD = ".free_field"
 """Suffix of a monitor's name for the history of its twin in the free-field column."""
 
@@ -177,4 +201,7 @@ class Monitor(Table):
         unit="m",
         means="place",
         help="where; between equally near particles the lowest is taken, of these the leftmost",
+    )
+    points: tuple[tuple[float, float], ...] | None = quantity(
+        None, unit="m", means="place", help="corners of a polygon, of whose particles the mean is recorded"
     )

@@ -13,7 +13,7 @@ from dembound.casefile.disks.group import Group
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
 from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
-from dembound.casefile.disks.load import Load, Monitor
+from dembound.casefile.disks.load import Load, Monitor, pull
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, can_break, intact_depths
 from dembound.casefile.disks.wall import Wall
@@ -252,6 +252,21 @@ class DiskCase(Case):
     def moving(self) -> set[str]:
         """Names of the waves by which walls move."""
         return {name for wall in self.wall for name in wall.waves.values()}
+
+    @property
+    def pull(self) -> float:
+        """The largest acceleration (m/s²) of steady loads; 0 without one."""
+        return pull(self.load)
+
+    @property
+    def walls_stop(self) -> float:
+        """Time (s) from which all walls stand; infinite if one never does."""
+        ends = [min(self._stops(wall), wall.until or np.inf) for wall in self.wall if wall.moves]
+        return max(ends, default=0.0)
+
+    def _stops(self, wall: Wall) -> float:
+        """Time (s) at which the velocity of a moving wall ends."""
+        return max((self.wave[name].duration() for name in wall.waves.values()), default=np.inf)
 
     @cached_property
     def intact(self) -> dict[str, int]:

@@ -14,6 +14,7 @@ from dembound.casefile.disks.load import Monitor, is_no_twin
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import MOST_MONITORS
 from dembound.holes.hole import Hole, surface_below
+from dembound.holes.polygon import Points
 from dembound.packings.base import TYPED, Packing
 from dembound.table import FileName, Table, quantity
 
@@ -30,6 +31,9 @@ DIGITS = 9
 class MonitorTable(Table):
     """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
 
+    With `points` it records the mean motion of the body's particles whose centres are in a polygon at the start, each
+    counted by its mass.
+
     A row `NAME` along the surface becomes the monitors `NAME_1`, `NAME_2` and so on, at equal steps of x from the left.
     Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
     """
@@ -42,6 +46,13 @@ class MonitorTable(Table):
         unit="m",
         means="place",
         help="where; between equally near particles the lowest is taken, of these the leftmost",
+    )
+    points: Points | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        help="corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; "
+        "instead of position",
     )
     along: Literal["surface"] | None = quantity(
         None, unit="1", help='"surface": a row along the free surface of the ground, instead of position'
@@ -64,8 +75,12 @@ class MonitorTable(Table):
     def _place_or_row(self) -> "MonitorTable":
         of_rows = [key for key in ("spacing", "from_", "to") if getattr(self, key) is not None]
         problems = []
-        if self.along is None:
-            problems += ["position: is missing; give it, or along"] if self.position is None else []
+        if self.points is not None:
+            stray = [key for key in ("position", "along", *of_rows) if getattr(self, key) is not None]
+            problems += [f"{self.key_of(key)}: is not allowed together with points" for key in stray]
+            problems += ["points: must be three or more"] if len(self.points) < 3 else []
+        elif self.along is None:
+            problems += ["position: is missing; give it, along or points"] if self.position is None else []
             problems += [f"{self.key_of(key)}: is for a row; give along, too" for key in of_rows]
         else:
             problems += ["position: is not allowed together with along"] if self.position is not None else []
@@ -98,12 +113,21 @@ def without_rows(tables: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     places = {id(table): place for place, table in numbered("monitor", tables["monitor"])}
     for table in tables["monitor"]:
         if table is None or table.along is None:
-            monitors.append(table and Monitor(name=table.name, position=table.position))
+            monitors.append(table and _single(table))
             continue
         found = list(_row(table, tables))
         problems += [f"{places[id(table)]}.{line}" for line in found if isinstance(line, str)]
         monitors += [each for each in found if not isinstance(each, str)] or [None]
     return {**tables, "monitor": tuple(monitors)}, problems
+
+
+def _single(table: MonitorTable) -> Monitor:
+    """A monitor at a place, or of the mean of a polygon, whose place is that of the mean of its corners."""
+    if table.points is None:
+        assert table.position is not None
+        return Monitor(name=table.name, position=table.position)
+    x, y = np.mean(table.points, axis=0).tolist()
+    return Monitor(name=table.name, position=(x, y), points=table.points)
 
 
 def _row(row: MonitorTable, tables: Mapping[str, Any]) -> Iterator[Monitor | str]:

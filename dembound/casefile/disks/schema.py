@@ -21,7 +21,7 @@ from dembound.casefile.disks.incident import (
 )
 from dembound.casefile.disks.joint import Joint, joint_problems
 from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
-from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems
+from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems, rest_problems
 from dembound.casefile.disks.material import BOND_KEYS, ROLLING_KEY, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
 from dembound.casefile.disks.monitor_rows import MonitorTable, without_rows
@@ -89,6 +89,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from unlike_problems(tables)
     yield from law_problems(tables)
     yield from wall_problems(tables)
+    yield from rest_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["damping"] and tables["material"]:

@@ -169,7 +169,7 @@ def _support(scene: DiskScene, table: Boundary, edge: Edge, medium: BoundaryMedi
 
     The moment that kept them would go on acting in the run, where nothing but friction holds such a disk.
     """
-    held, alone = builder.held, ~scene.bonded[edge.nodes]
+    held, alone = builder.held, ~np.isin(edge.nodes, scene.bonds)
     if 2 not in table.prescribed(edge.axis) or not alone.any():
         table.support(edge, medium, scene.case.wave, builder)
         return

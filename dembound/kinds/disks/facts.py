@@ -28,6 +28,7 @@ from dembound.kinds.disks.slopes import slope_facts
 from dembound.kinds.disks.summary import describe_side
 from dembound.kinds.disks.walls import wall_facts
 from dembound.kinds.disks.wave_warnings import highest_carried, particles_per_wavelength, strong_waves
+from dembound.motion.scene import Mean
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
 BALANCED = 1e-9
@@ -83,6 +84,8 @@ def _monitor_facts(scene: DiskScene) -> Entries:
     places = scene.monitored
     for name in shown_names([monitor.name for monitor in scene.case.monitor]):
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
+        if isinstance(mean := scene.between.get(name), Mean):
+            what = f"mean of {len(mean.node):,} particles, their centre"
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")
         column = "the ground without the body" if not scene.seams else f"in the free-field column {twin}"

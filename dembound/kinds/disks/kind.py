@@ -6,9 +6,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.disks.changes import Changes, require_inner_holes, times_of
 from dembound.disks.contacts.pairs import first_break
+from dembound.disks.debris import Rest
 from dembound.disks.intact import require_room
 from dembound.disks.material.constants import limits_of
 from dembound.disks.material.packing_waves import front_of
@@ -29,6 +32,7 @@ from dembound.disks.trials import trials_of_disks
 from dembound.disks.watches import FarDisks, Turns
 from dembound.formulas.disks.entry import all_late_by
 from dembound.kernels.contacts import UPDATED
+from dembound.kinds.disks.debris import debris_columns, describe_debris
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import with_incident_waves
 from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh, wall_mesh
@@ -41,6 +45,7 @@ from dembound.kinds.disks.summary import (
 )
 from dembound.kinds.disks.walls import require_clear
 from dembound.kinds.disks.warnings import disk_warnings
+from dembound.motion.endings import rest_rule
 from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
@@ -51,6 +56,7 @@ from dembound.table import Box
 from dembound.words import Entries
 
 if TYPE_CHECKING:
+    import h5py
     import meshio
     from matplotlib.figure import Figure
 
@@ -103,7 +109,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         )
 
     def trackers(self, run: Run) -> list[Tracker]:
-        """What a case needs: membranes of pressures on sides, far disks, turns of bonds, a load factor."""
+        """What a case needs: membranes of pressures on sides, far disks, rest, turns of bonds, a load factor."""
         scene, case, system = run.scene, run.scene.case, run.system
         assert isinstance(case, DiskCase)
         assert isinstance(system, DiskSystem)
@@ -113,6 +119,9 @@ class Disks(Kind[DiskCase, DiskScene]):
             found.append(Changes(scene, system, run.time_step))
         if scene.has_history:
             found.append(FarDisks(scene, retires=case.run.far == "retire"))
+            if case.pull > 0.0:
+                rule, ends = rest_rule(scene, self.sources(scene)), case.run.until == "rest"
+                found.append(Rest(scene, rule, run.time_step, ends=ends))
         if not scene.ground.law.starts_elastic:
             found.append(Overlaps(largest_overlap(scene, run.time_step)))
         if limits_of(case.material).geometry != UPDATED:
@@ -178,7 +187,12 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     def summarise(self, scene: DiskScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
         """Packing, sides and the static stage in numbers."""
-        return summarise_disks(scene, run) | {"static": beginning.summary}
+        found = summarise_disks(scene, run) | {"static": beginning.summary}
+        return found | {"debris": describe_debris(scene, run, record)}
+
+    def derived(self, scene: DiskScene, file: h5py.File) -> dict[str, tuple[np.ndarray, str]]:
+        """Run-out and fragments at every snapshot."""
+        return debris_columns(scene, file)
 
     def work(self, run: Run) -> int:
         """Steps times the particles that are stepped."""

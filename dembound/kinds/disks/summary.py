@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import with_history
+from dembound.disks.debris import pieces
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.rest.settled import Settled, Uniformity
 from dembound.disks.scene import DiskScene
@@ -18,6 +19,7 @@ from dembound.disks.stepping.near_ties import OPENED, near_tie_warnings
 from dembound.disks.stepping.side_watch import WARNS, lasting_force_warnings, reach_warnings
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.watches import FarDisks, Turns, far_warnings, turn_warnings
+from dembound.kinds.disks.debris import debris_in_words, rest_warnings
 from dembound.kinds.disks.ground import describe_layers, packing_quantities
 from dembound.kinds.disks.joints import describe_joints, joint_warnings
 from dembound.motion.part import MANY
@@ -59,6 +61,7 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
             )
     elif summary.get("joints"):
         facts += _broken(summary["cracks"], static, "")
+    facts += debris_in_words(summary.get("debris"))
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
@@ -278,6 +281,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
             *lasting_force_warnings(summary.get("forces_at_rest")),
             *reach_warnings(summary.get("forces_at_rest")),
             *far_warnings(summary.get("far")),
+            *rest_warnings(scene.case, summary),
             *turn_warnings(summary.get("turns"), scene.case.material.law, has_history=scene.has_history),
             *joint_warnings(summary.get("joints", {})),
             *energy_warnings(scene, summary["energy"], file),
@@ -325,11 +329,4 @@ def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
     """
     if len(broken) == 0:
         return np.zeros(scene.disk_count, dtype=np.int8)
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    pairs = scene.assembly.pairs
-    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.disk_count, 1] for each in (pairs, broken))
-    pairs = pairs[~np.isin(listed, gone)]
-    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.disk_count, scene.disk_count))
-    return connected_components(joined, directed=False)[1]
+    return pieces(scene.disk_count, scene.assembly.pairs, broken)

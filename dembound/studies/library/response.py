@@ -96,7 +96,7 @@ def _contacts(library: Library, scene: DiskScene, pair: str) -> Iterator[Watched
     if len(names) != 2 or any(name not in library.monitors for name in names):
         raise CaseError([f"--load-factor: is {pair}, must be two monitors, A,B; here: {', '.join(library.monitors)}"])
     if between := [name for name in names if name in scene.between]:
-        raise CaseError([f"--load-factor: {between[0]} is in the continuum, which has no contacts"])
+        raise CaseError([f"--load-factor: {between[0]} is no single disk, whose contacts are known"])
     disks = [scene.monitors[name] for name in names]
     pairs = scene.assembly.pairs
     forward, backward = ((pairs == order).all(axis=1) for order in (disks, disks[::-1]))

@@ -107,6 +107,9 @@ LEFT_OUT = {
 MOST_SHOWN = 6
 """Number of quantities that are printed and drawn by default."""
 
+RAN_OUT = ("debris.share", ".x99", ".largest", ".singles")
+"""Ends of the names of debris that are shown by default."""
+
 COMPONENTS = ("x", "y", "xy")
 """Names of the entries of lists of two or three numbers."""
 
@@ -131,6 +134,15 @@ UNITS = {
     ENERGY: ("absorbed", "came_in", "stored"),
 }
 """Unit -> last parts of names, without component; other names are pure numbers unless within `WITHIN`."""
+
+OF_DEBRIS = {
+    "m": ("x95", "x99", "centre", "largest"),
+    "kg/m": ("mass",),
+    "degrees": ("angle",),
+    "s": ("rest",),
+    ENERGY: ("fall", "kinetic"),
+}
+"""The same within the entry "debris"."""
 
 WITHIN = {"energy": ENERGY, "stress": "Pa", "pull_back_strength": "Pa"}
 """Entry of the summary -> unit of all numbers within it."""
@@ -184,13 +196,17 @@ def unit_of(name: str) -> str:
     last = next((part for part in reversed(parts) if part not in (*COMPONENTS, *ENDS)), first)
     if first in WITHIN and last != "relative_error":
         return WITHIN[first]
-    return next((unit for unit, names in UNITS.items() if last in names), "1")
+    units = OF_DEBRIS if first == "debris" else UNITS
+    return next((unit for unit, names in units.items() if last in names), "1")
 
 
 def shown_by_default(names: Sequence[str], action: Action) -> list[str]:
-    """The first few of the calibrated factors, or of the peak velocities at monitors."""
+    """The first few of the calibrated factors, of run-out and fragments where debris ran out, or of peak velocities."""
+    ran_out = [name for name in names if name.startswith("debris.") and name.endswith(RAN_OUT)]
     if action == "calibrate":
         found = [name for name in names if not name.endswith((".passes", ".ratio"))]
+    elif any(name.endswith("x99") for name in ran_out):
+        found = ["cracks.tension", *ran_out]
     else:
         found = [name for name in names if name.startswith("monitors.") and name.endswith("peak_velocity")]
     return (found or list(names))[:MOST_SHOWN]
