@@ -239,7 +239,8 @@ def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
     """By how much walls raise bounds of M⁻¹K (1/s²) and M⁻¹C (1/s): where they are stiffer than a disk in their place.
 
     A contact of stiffness k_w with a wall takes as much from a disk, k_w/m and 3k_sw/m, as one of k_w/2 with an equal
-    disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls.
+    disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls. Where a wall
+    resists rolling, by k_sw R² on the rotation, the 3 is ½(5 + √17).
     """
     stiffer, slower = 0.0, 0.0
     for ground in _zones_of(scene.ground):
@@ -247,7 +248,8 @@ def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
         for wall in scene.case.wall:
             kn = wall.kn or 2.0 * ground.moduli.emod
             ks = (wall.ks or kn / ground.moduli.kratio) if wall.fric > 0.0 else 0.0
-            stiffer = max(stiffer, 2.0 * max(kn - 2.0 * normal, 3.0 * (ks - 2.0 * shear)) / mass)
+            sheared = (0.5 * (5.0 + np.sqrt(17.0)) if wall.rr_fric > 0.0 else 3.0) * ks - 6.0 * shear
+            stiffer = max(stiffer, 2.0 * max(kn - 2.0 * normal, sheared) / mass)
             ratios, springs = np.array([wall.dp_nratio, scene.case.material.dp_nratio]), np.array([kn, 0.5 * normal])
             own, pair = viscosity(ratios, springs, 2.0 * mass, 2.0 * mass).tolist()  # m_c of a wall is the whole mass
             slower = max(slower, 2.0 * (own - 2.0 * pair) / mass)
