@@ -71,7 +71,7 @@ def pile(rolling: float | None, seed: int, folder: str) -> tuple[float, float, f
     walls: list[dict[str, Any]] = [
         {"name": "floor", "points": teeth, "fric": 0.5, "rr_fric": rolling or 0.0, "dp_nratio": 0.2},
         {"name": "back", "points": [[-0.12, -0.4], [-0.12, 5.0]]},
-        {"name": "gate", "points": [[4.62, -0.4], [4.62, 5.0]], "velocity": [0.4, 0.0], "until": 12.0},
+        {"name": "gate", "points": [[4.62, -0.4], [4.62, 5.0]], "velocity": [0.4, 0.0], "until": 8.0},
     ]
     found = run(
         tables(rolling, (4.5, 3.0), seed)
@@ -79,7 +79,7 @@ def pile(rolling: float | None, seed: int, folder: str) -> tuple[float, float, f
             "wall": walls,
             "load": [{"name": "weight", "acceleration": [0.0, -GRAVITY]}],
             "static": {"ratio": 1e-4},
-            "run": {"duration": 16.0},
+            "run": {"duration": 12.0},
         },
         folder,
     )

@@ -15,7 +15,6 @@ with their power −¼: for four times the overlap it is 0.71 times as long.
 """
 
 
-
 def zones_of(ground: PackedMaterial) -> list[PackedMaterial]:
     """All materials of which disks of the ground are."""
     return [zone.material for zone in ground.zones] if isinstance(ground, LayeredGround) else [ground]

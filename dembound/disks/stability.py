@@ -103,9 +103,7 @@ def _largest_viscosity(scene: DiskScene, of: Callable[[tuple[int, int]], Stiffne
     of : gives what stands in place of dashpots for contacts between two zones.
     """
     count, of = scene.disk_count, of or partial(brick_dashpots, scene.ground, scene.case.material)
-    tables = [
-        contact_rows(scene.assembly.part(disks), scene.ground, disks.start, of) for disks in scene.parts.values()
-    ]
+    tables = [contact_rows(scene.assembly.part(disks), scene.ground, disks.start, of) for disks in scene.parts.values()]
 
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in tables:
@@ -115,9 +113,7 @@ def _largest_viscosity(scene: DiskScene, of: Callable[[tuple[int, int]], Stiffne
     return largest_eigenvalue(Layout.plain(count), scene.mass[:count], scene.inertia[:count], scene.free, moves, fill)
 
 
-def _partly_broken(
-    scene: DiskScene, largest: float, slows: float, limit: float, damp: float, opening: float
-) -> float:
+def _partly_broken(scene: DiskScene, largest: float, slows: float, limit: float, damp: float, opening: float) -> float:
     """The step (s), at most `limit`, where some contacts have bonds k̄, and others have dashpots c instead.
 
     largest, slows : eigenvalues with all bonds, as of `_step_of`. In place of (k + k̄)/OPENING of a contact stands

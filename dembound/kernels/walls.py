@@ -1,11 +1,11 @@
 """Rigid walls of line segments that disks touch: linear springs and dashpots, Coulomb's friction, no tension.
 
-Which contacts of a disk count is found in wall_contacts.py. With the normal n from the wall to the centre and t = (n_y, −n_x): overlap δ = R − d, force N = k_n δ along n and −S
-along t, with S = k_s s of the path s that the surface slides, at most μN; moment −RS, of the whole radius, so that its
-work does not depend on changes of the overlap. Rolling resistance is that of pairs (laws/linearpbond.py) with R̄ = R:
-moment −k_s R² θ of the rotation θ that has not slid, at most rr_fric R N. What friction and dashpots take, and what
-closing and opening do, is counted as for pairs of disks (kernels/contacts.py), and the work of walls that move as that
-of sides.
+Which contacts of a disk count is found in wall_contacts.py. With the normal n from the wall to the centre and t = (n_y,
+−n_x): overlap δ = R − d, force N = k_n δ along n and −S along t, with S = k_s s of the path s that the surface slides,
+at most μN; moment −RS, of the whole radius, so that its work does not depend on changes of the overlap. Rolling
+resistance is that of pairs (laws/linearpbond.py) with R̄ = R: moment −k_s R² θ of the rotation θ that has not slid, at
+most rr_fric R N. What friction and dashpots take, and what closing and opening do, is counted as for pairs of disks
+(kernels/contacts.py), and the work of walls that move as that of sides.
 """
 
 import math
@@ -43,7 +43,7 @@ FRICTION, CLOSES, DASHPOT = range(3)
 
 @njit(**FAST)
 def _springs(k, w, walls):
-    """Normal and shear stiffness (N/m), and that against rolling (N·m), of contacts of disk k of the list with wall w."""
+    """Normal, shear (N/m) and rolling stiffness (N·m) of contacts of disk k of the list with wall w."""
     kn = walls.given[w, 0] if walls.given[w, 0] > 0.0 else walls.spring[k]
     ks = walls.given[w, 1] if walls.given[w, 1] > 0.0 else kn / walls.kratio[k]
     return kn, ks, ks * walls.radius[k] ** 2

@@ -45,7 +45,7 @@ def test_it_slides_or_rolls_down_a_slope(lab, friction, held, expected):
 
 @pytest.mark.parametrize("share", [0.95, 1.2])
 def test_it_rests_up_to_the_slope_of_its_rolling_resistance_and_rolls_above(lab, share):
-    """tan α = rr_fric, as R̄ is R; above by ⅔ g(sin α − rr_fric cos α), and friction takes rr_fric R N a radian."""
+    """At tan α = rr_fric, as R̄ = R; above by ⅔ g(sin α − rr_fric cos α), and friction takes rr_fric R N a radian."""
     slope, rolling = 0.3, 0.3 / share
     cosine = 1.0 / np.hypot(1.0, slope)
     along = cosine * np.array([1.0, slope])

@@ -44,7 +44,10 @@ def test_disks_touch_walls_from_the_start_and_waves_move_them() -> None:
         ),
         ({"velocity": [1.0, 0.0], "wave_x": "push"}, "wall[1, floor].wave_x: is not allowed together with velocity"),
         ({"until": 0.1}, "wall[1, floor].until: is of a wall that moves; give velocity, wave_x or wave_y"),
-        ({"moves": "incident"}, 'wall[1, floor].moves: is "incident", but the motion of the ground beyond is not known'),
+        (
+            {"moves": "incident"},
+            'wall[1, floor].moves: is "incident", but the motion of the ground beyond is not known',
+        ),
         ({"moves": "incident", "until": 0.1}, "wall[1, floor].until: is not allowed together with moves"),
         ({"at": [0.0, 0.0]}, "wall[1, floor].at: is of a wall that moves as the ground; give moves"),
         ({"rr_fric": 0.3}, "wall[1, floor].rr_fric: is of disks that roll, but with fric = 0 they slide"),
