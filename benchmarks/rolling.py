@@ -5,7 +5,7 @@
 `shear`: disks between a fixed base and a platen under a pressure, periodic sideways, which shears them at an inertial
 number of 0.005; angle of the mean traction on the base from a shear of 0.7 on. `piles`: a column on a rough floor,
 whose side wall draws back slowly; angle of the slope, kinetic energy at the end over the drop of potential energy, and
-the largest error of the ledger over this drop. docs/tasks/cracks.md has both.
+the largest error of the ledger over this drop. docs/tasks/cracks.md has what was found.
 """
 
 import argparse
