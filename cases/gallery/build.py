@@ -48,6 +48,7 @@ TOPICS = {
     "Slopes and dams under waves from below": ("step_sv", "landslide_quake", "empty_dam"),
     "Sources and exact solutions": ("point_source", "lamb", "blast", "blast_cracks"),
     "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding", "collapse"),
+    "Joints, blocks and piles": ("joint_waves", "newmark", "toppling", "pile"),
     "Bars: waves": ("dispersion", "interface", "matched_layer", "measured_pulse", "hopkinson"),
     "Bars: cracks": ("spalling", "fracture_energy"),
 }

@@ -1,21 +1,23 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.contacts.dashpots import brick_dashpots, viscosity
+from dembound.disks.contacts.dashpots import brick_dashpots
 from dembound.disks.contacts.layout import contact_rows
 from dembound.disks.faces.springs import filling_springs
-from dembound.disks.material.packed_material import PackedMaterial
+from dembound.disks.loose import beyond_neighbours, loose_eigenvalue, loose_modes, loose_viscosity, reserve
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.damped_ground import growing_by_lag
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
+from dembound.laws import Stiffness
 from dembound.motion.stability import largest_eigenvalue
 from dembound.motion.state import Layout
 
@@ -29,18 +31,11 @@ energy grows by orders of magnitude within a thousand steps. Below this limit th
 """
 
 
-RESERVE, LOOSE = 4.0, 1e-2
-"""Overlap for which the step limit holds under a law whose stiffness grows with it.
-
-The first is times the largest one at rest, the second a share of the smallest radius, without pressure. The step goes
-with their power −¼: for four times the overlap it is 0.71 times as long.
-"""
-
 Filling = Callable[[np.ndarray, np.ndarray], None]
 """Fills or changes its second argument (3, slots) with forces at displacements, its first one."""
 
 MOST_ROUNDS, CONVERGED = 40, 1e-3
-"""Rounds, and relative change of ω² at which they end, of the step limit with ties, whose dashpots depend on it."""
+"""Rounds, and relative change of ω² at which they end, of the step limit where dashpots depend on it."""
 
 
 def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = True) -> float:
@@ -54,28 +49,32 @@ def step_limit(scene: DiskScene, damp: float | None = None, *, viscous: bool = T
     multiplied by 1.4 where contacts may open (`OPENING`).
 
     Dashpots C of contacts are half a step behind: in place of K stands K + 2C/Δt, whose largest eigenvalue is at most
-    the sum of those of both. Where they act on unbonded contacts alone, the step need not be that of intact ground with
-    dashpots, but must be stable where bonds are broken, see `_partly_broken`. Resistance to rolling does not shorten
-    it, see `_loose_eigenvalue`. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
+    the sum of those of both. Where they act on unbonded contacts alone, the step must be stable in loose ground, see
+    `loose_modes`, and where some bonds are broken, see `_partly_broken`. Resistance to rolling does not shorten it, see
+    `loose_eigenvalue`. Rayleigh damping shortens it too, see `_with_lag`. viscous : whether these two act.
 
-    A wall counts as a neighbour, see `_beyond_neighbours`.
+    A wall counts as a neighbour, see `beyond_neighbours`.
 
     Raises RunError when the iteration for the eigenvalue does not converge.
     """
-    bounds = [(_largest_eigenvalue(scene), 0.0)]
+    bounds, instead = [(_largest_eigenvalue(scene), 0.0)], False
     if scene.has_history:
         zones, dashed = scene.inside.zone_materials, viscous and scene.case.material.has_dashpots
+        instead = dashed and not scene.case.damps_bonds
         opens = any(layer.moduli.emod > 0.0 or layer.overlaps is not None for layer in scene.inside.materials)
         if dashed and scene.case.damps_bonds:
             bounds = [(bounds[0][0], _largest_viscosity(scene))]
-        elif dashed:
-            bounds += _partly_broken(scene, bounds[0][0])
-        bounds += [(_loose_eigenvalue(zone), _loose_viscosity(scene, zone) if dashed else 0.0) for zone in zones]
-        stiffer, slower = _beyond_neighbours(scene)
+        for zone in zones:
+            bounds += [(loose_eigenvalue(zone), loose_viscosity(scene, zone) if dashed and not instead else 0.0)]
+            bounds += loose_modes(scene, zone) if instead else []
+        stiffer, slower = beyond_neighbours(scene)
         bounds = [(largest + stiffer, slows + slower * viscous) for largest, slows in bounds]
         bounds = [(largest / (OPENING if opens or scene.case.wall else 1.0), slows) for largest, slows in bounds]
     damp = 1.0 + (scene.case.material.damp if damp is None else damp)
-    limit = min(_step_of(largest * damp, slows * damp) for largest, slows in bounds)
+    bounds = [(largest * damp, slows * damp) for largest, slows in bounds]
+    limit = min(_step_of(*bound) for bound in bounds)
+    if instead:
+        limit = _partly_broken(scene, *bounds[0], limit, damp, OPENING if opens or scene.case.wall else 1.0)
     return _with_lag(scene, limit) if viscous else limit
 
 
@@ -91,15 +90,13 @@ def viscous_share(scene: DiskScene) -> float:
     return step_limit(scene) / step_limit(scene, viscous=False)
 
 
-def _largest_viscosity(scene: DiskScene) -> float:
-    """The largest eigenvalue of M⁻¹C (1/s) of the dashpots of all contacts, closed as they are built."""
-    material, count = scene.case.material, scene.disk_count
-    tables = [
-        contact_rows(
-            scene.assembly.part(disks), scene.inside, disks.start, partial(brick_dashpots, scene.inside, material)
-        )
-        for disks in scene.parts.values()
-    ]
+def _largest_viscosity(scene: DiskScene, of: Callable[[tuple[int, int]], Stiffness] | None = None) -> float:
+    """The largest eigenvalue of M⁻¹C (1/s) of the dashpots of all contacts, closed as they are built.
+
+    of : gives what stands in place of dashpots for contacts between two zones.
+    """
+    count, of = scene.disk_count, of or partial(brick_dashpots, scene.inside, scene.case.material)
+    tables = [contact_rows(scene.assembly.part(disks), scene.inside, disks.start, of) for disks in scene.parts.values()]
 
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for rows in tables:
@@ -109,23 +106,32 @@ def _largest_viscosity(scene: DiskScene) -> float:
     return largest_eigenvalue(Layout.plain(count), scene.mass[:count], scene.inertia[:count], scene.free, moves, fill)
 
 
-def _partly_broken(scene: DiskScene, largest: float) -> list[tuple[float, float]]:
-    """Bounds of the eigenvalues of M⁻¹K and M⁻¹C where some contacts have bonds, and others have dashpots instead.
+def _partly_broken(scene: DiskScene, largest: float, slows: float, limit: float, damp: float, opening: float) -> float:
+    """The step (s), at most `limit`, where some contacts have bonds k̄, and others have dashpots c instead.
 
-    largest : eigenvalue with all bonds. In place of the springs k + k̄ of a contact with a bond stand k + 2c/Δt without:
-    no matrix is larger than that of all bonds times the largest ratio of both, max k/(k + k̄) + 2/Δt max c/(k + k̄).
+    largest, slows : eigenvalues with all bonds, as of `_step_of`. In place of (k + k̄)/OPENING of a contact stands
+    k/OPENING + 2c/Δt, larger by 2c/Δt − k̄/OPENING if that is positive. The sum of the eigenvalues with all bonds and of
+    this alone is a bound. As Δt is on both sides of the equation, it is found by iteration from above.
     """
-    ground, shares, rates = scene.inside, [0.0], [0.0]
+    ground, step = scene.inside, limit
     radii = ground.brick.radii[ground.brick.pairs].T
-    for pairing in ground.pairings:
+
+    def excess(pairing: tuple[int, int]) -> Stiffness:
         constants = ground.pair_constants((radii[0], radii[1]), ground.brick.vectors, pairing, gaps_close=False)
-        viscous = brick_dashpots(ground, scene.case.material, pairing)
-        for names, rate in ((("kn", "bond_kn"), viscous.normal), (("ks", "bond_ks"), viscous.shear)):
-            contact, bond = (ground.law.column(constants, name) for name in names)
-            acts = contact > 0.0
-            shares += (contact[acts] / (contact + bond)[acts]).tolist()
-            rates += (rate[acts] / (contact + bond)[acts]).tolist()
-    return [(max(shares) * largest, max(rates) * largest)]
+        own = brick_dashpots(ground, scene.case.material, pairing)
+        normal, shear = (
+            np.maximum(2.0 * rate / step - ground.law.column(constants, name) / opening, 0.0)
+            for name, rate in (("bond_kn", own.normal), ("bond_ks", own.shear))
+        )
+        return replace(own, normal=normal, shear=shear)
+
+    for _ in range(MOST_ROUNDS):
+        before = step
+        if any(each.normal.any() or each.shear.any() for each in map(excess, ground.pairings)):
+            step = min(limit, _step_of(largest + damp * _largest_viscosity(scene, excess), slows))
+        if step >= before * (1.0 - CONVERGED):
+            return step
+    raise RunError("the step limit with dashpots of contacts has not converged; give a smaller dp_nratio")
 
 
 def _with_lag(scene: DiskScene, limit: float) -> float:
@@ -218,51 +224,6 @@ def filling_forces(scene: DiskScene, change: Filling | None = None) -> Filling:
     return fill
 
 
-def _loose_eigenvalue(ground: PackedMaterial) -> float:
-    """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
-
-    With contacts and no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
-    24k_s/m, when all disks rotate in the same way; the sum is a bound for both together. Springs k_s R̄² against rolling
-    add nothing to this motion, and less to others than its distance from them.
-    """
-    normal, shear = _loose_springs(ground)
-    return (6.0 * normal + 24.0 * shear) / float(ground.mass.min())
-
-
-def _beyond_neighbours(scene: DiskScene) -> tuple[float, float]:
-    """By how much walls raise bounds of M⁻¹K (1/s²) and M⁻¹C (1/s): where they are stiffer than a disk in their place.
-
-    A contact of stiffness k_w with a wall takes as much from a disk, k_w/m and 3k_sw/m, as one of k_w/2 with an equal
-    disk, 2k/m and 6k_s/m, and more than six neighbours have no room. A disk may be between two walls.
-    """
-    stiffer, slower = 0.0, 0.0
-    for ground in scene.inside.zone_materials:
-        (normal, shear), mass = _loose_springs(ground), float(ground.mass.min())
-        for wall in scene.case.wall:
-            kn = wall.kn or 2.0 * ground.moduli.emod
-            ks = (wall.ks or kn / ground.moduli.kratio) if wall.fric > 0.0 else 0.0
-            stiffer = max(stiffer, 2.0 * max(kn - 2.0 * normal, 3.0 * (ks - 2.0 * shear)) / mass)
-            ratios, springs = np.array([wall.dp_nratio, scene.case.material.dp_nratio]), np.array([kn, 0.5 * normal])
-            own, pair = viscosity(ratios, springs, 2.0 * mass, 2.0 * mass).tolist()  # m_c of a wall is the whole mass
-            slower = max(slower, 2.0 * (own - 2.0 * pair) / mass)
-    return stiffer, slower
-
-
-def _loose_springs(ground: PackedMaterial) -> tuple[float, float]:
-    """Largest normal and shear stiffness (N/m) of contacts of the smallest disks, up to `reserve` where they vary."""
-    moduli, radii = ground.moduli, ground.brick.radii
-    if ground.overlaps is None:
-        return moduli.emod, moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
-    found = ground.law.springs_at(moduli, radii.min(), radii.max(), np.array(reserve(ground)))
-    return float(found.contact_normal), float(found.contact_shear)
-
-
-def reserve(ground: PackedMaterial) -> float:
-    """Overlap (m) up to which the step limit holds, where contacts are stiffer with it."""
-    assert ground.overlaps is not None
-    return RESERVE * float(ground.overlaps.max()) if ground.has_stiffness else LOOSE * float(ground.brick.radii.min())
-
-
 def largest_overlap(scene: DiskScene, step: float, damp: float | None = None) -> float:
     """Overlap (m) of contacts up to which a step (s) is stable; infinite where their stiffness does not grow with it.
 
@@ -274,21 +235,10 @@ def largest_overlap(scene: DiskScene, step: float, damp: float | None = None) ->
     ground = scene.ground
     if ground.overlaps is None:
         return float("inf")
-    dashed = _loose_viscosity(scene, ground) if damp is None and scene.case.material.has_dashpots else 0.0
+    dashed = loose_viscosity(scene, ground) if damp is None and scene.case.material.has_dashpots else 0.0
     more = 1.0 + (scene.case.material.damp if damp is None else damp)
-    limit = _step_of(_loose_eigenvalue(ground) / OPENING * more, dashed * more)
+    limit = _step_of(loose_eigenvalue(ground) / OPENING * more, dashed * more)
     return reserve(ground) * (limit / step) ** 4
-
-
-def _loose_viscosity(scene: DiskScene, ground: PackedMaterial) -> float:
-    """The largest eigenvalue of M⁻¹C (1/s) of the hexagonal lattice of the smallest disks, see `_loose_eigenvalue`.
-
-    With dashpots c_n and c_s it is 24c_s/m, when all disks rotate in the same way, or (6c_n + 2c_s)/m.
-    """
-    material, mass = scene.case.material, float(ground.mass.min())
-    springs, ratios = np.array(_loose_springs(ground)), np.array([material.dp_nratio, material.dp_sratio])
-    normal, sheared = viscosity(ratios, springs, mass, mass).tolist()
-    return max(24.0 * sheared, 6.0 * normal + 2.0 * sheared) / mass
 
 
 def _rounded_down(step: float) -> float:

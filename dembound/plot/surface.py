@@ -61,7 +61,7 @@ def plot_surface(path: Path, found: Amplification, component: Component | None =
         cell.set_axis_off() if kind != "map" else None
     rows = iter(panels)
     for quantity, values in found.peaks.items():
-        _draw_lines(next(rows), found, values, f"peak {quantity} over\nfree field (–)", 1.0, lines)
+        _draw_lines(next(rows), found, values, f"peak {quantity}\nover free field (–)", 1.0, lines)
     for c, bar in zip(maps, beside[len(found.peaks) :], strict=False):
         _draw_map(figure, next(rows), bar, found, c)
     end = next(rows)

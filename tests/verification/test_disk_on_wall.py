@@ -43,6 +43,31 @@ def test_it_slides_or_rolls_down_a_slope(lab, friction, held, expected):
     assert np.diff(speeds)[0] / (steps * run.time_step) == pytest.approx(G * expected, rel=slack)
 
 
+@pytest.mark.parametrize("share", [0.95, 1.2])
+def test_it_rests_up_to_the_slope_of_its_rolling_resistance_and_rolls_above(lab, share):
+    """At tan α = rr_fric, as R̄ = R; above by ⅔ g(sin α − rr_fric cos α), and friction takes rr_fric R N a radian."""
+    slope, rolling = 0.3, 0.3 / share
+    cosine = 1.0 / np.hypot(1.0, slope)
+    along = cosine * np.array([1.0, slope])
+    wall = {"points": [(-20.0 * along).tolist(), along.tolist()], "fric": 0.8, "rr_fric": rolling, "dp_nratio": 0.5}
+    run = lab.simulation(above(lab, R * np.array([-along[1], along[0]]), wall))
+    ledger, speeds = lab.ledger(run, 50), []
+    for time in (0.3, 0.8):
+        run.run(round(time / run.time_step))
+        speeds.append(-along @ run.state.velocity[:2, 0])
+    steps = round(0.8 / run.time_step) - round(0.3 / run.time_step)
+    last = ledger.entries[-1]
+    if share < 1.0:
+        assert np.abs(speeds).max() < 4e-3  # the elastic swing of its springs, as above
+        assert last.friction == ledger.entries[round(0.3 / run.time_step) // 50 + 1].friction
+    else:
+        expected = G * cosine * (slope - rolling) / 1.5
+        assert np.diff(speeds)[0] / (steps * run.time_step) == pytest.approx(expected, rel=0.02)  # the swing, 4e-3 m/s
+        turned, normal = abs(run.state.displacement[2, 0]), run.scene.mass[0] * G * cosine
+        assert last.friction == pytest.approx(rolling * R * normal * turned, rel=0.02)
+    assert abs(last.error) < 1e-9 * last.supplied
+
+
 @pytest.mark.parametrize("sideways", [0.2, 0.5, 0.8])
 def test_it_rebounds_from_a_corner_as_from_a_mirror(lab, sideways):
     """Whose normal is the line from the corner to its centre as they touch; within 1°, as the overlap turns it on."""
@@ -133,3 +158,6 @@ def test_the_step_limit_counts_a_stiff_wall(lab):
     mass = above(lab, [0.0, R]).mass[0]
     # 2·3k_s/m of the two walls that may hold a disk, next to which other contacts are nothing; 1.4 for those that open
     assert stiff == pytest.approx(2.0 / np.sqrt(1.4 * 6.0 * 1e12 / mass), rel=0.01)
+    rolls = choose_step(above(lab, [0.0, R], plain | {"kn": 1e12, "rr_fric": 0.3}))[1]
+    both = np.array([[1.0, 1.0], [1.0, 2.0]]) * [[1.0, np.sqrt(2.0)], [np.sqrt(2.0), 2.0]]  # k_s/m, I = ½mR²
+    assert rolls == pytest.approx(2.0 / np.sqrt(1.4 * 2.0 * np.linalg.eigvalsh(both)[-1] * 1e12 / mass), rel=0.01)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from small_cases import small
 
+from dembound.disks.scene import build
 from dembound.disks.stepping import walls
 from dembound.disks.stepping.walls import WallPart
 from dembound.motion.energy import Ledger
@@ -69,6 +70,45 @@ def test_that_of_a_heap_is_as_of_other_heaps() -> None:
     assert max(abs(entry.error) for entry in ledger.entries) < 4e-4 * last.supplied
     assert min(run.state.displacement[1] + run.scene.positions[:, 1]) < -1.0  # some fall on the lower floor
     assert (run.state.displacement[1] + run.scene.positions[:, 1]).min() > -3.5
+
+
+BONDED = {"law": "linearpbond", "fric": 0.5, "pb_ten": 1e9, "pb_coh": 1e9}
+FREE = {side: {"type": "free_field"} for side in ("left", "right")}
+
+
+def test_a_wall_moves_as_the_free_field_at_its_place_and_the_ledger_has_its_work(lab) -> None:
+    """That is the column's, to the bit, and as the incident wave and that from the surface to 2 % of both.
+
+    The wave of 40 m is known to half a disk of 0.5 m at the entry and at the surface, 2π/160 of its peak each. A plate
+    on the ground, which moves as 4 m below, is pushed by the surface, which moves later.
+    """
+    high, low = {"points": [[20.0, 0.0], [21.0, 20.0]], "moves": "incident"}, {"at": [0.0, 5.9], "moves": "incident"}
+    case = lab.case("A", (2.0, 10.0), held=("x",), material=BONDED, wave={"type": "cosine", "amplitude": 0.5,
+                    "period": 0.04}, boundary=FREE | {"bottom": {"type": "viscous_input", "wave_p": "pulse"}},
+                    wall=[high | {"at": [0.0, 9.75]}, low | {"points": [[-1.0, 10.0], [3.0, 10.0]]}])  # fmt: skip
+    scene = build(case)
+    run = lab.simulation(scene)
+    ledger, row = lab.ledger(run, 20), scene.assembly.positions[: scene.column_count, 1]
+    top, two = np.flatnonzero(row > 9.7), [np.flatnonzero(np.abs(row - y) < 0.01) for y in (5.75, 6.25)]
+    later, moved = Simulation(scene, run.time_step), []
+    for steps in (400, 401, 900):
+        run.run(steps)
+        column = run.state.displacement[1, : scene.column_count]
+        path = run.system.walls.place(steps)
+        assert path[0] == pytest.approx([0.0, column[top].mean()], abs=1e-15)
+        assert path[1, 1] == pytest.approx(0.7 * column[two[0]].mean() + 0.3 * column[two[1]].mean(), abs=1e-15)
+        moved.append(path[0, 1])
+        if steps == 400:
+            later.state.take(run.state.arrays())
+    later.run(900)
+    assert np.array_equal(later.state.displacement, run.state.displacement)
+    assert np.array_equal(later.system.walls.place(900), run.system.walls.place(900))
+    wave, times = case.wave["pulse"], run.time_step * np.array([400, 401, 900])
+    ways = np.array([[9.75], [10.25]]) / lab.speed
+    assert moved == pytest.approx(wave.displacement(times - ways).sum(axis=0), abs=0.02 * wave.displacement(1.0))
+    last = ledger.entries[-1]
+    assert abs(run.system.work_of_walls) > 0.01 * last.supplied
+    assert max(abs(entry.error) for entry in ledger.entries) < 1e-6 * last.supplied
 
 
 def outcome(steps: int, every: int) -> tuple[str, int]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.boundaries.boundary import Boundary
+from dembound.casefile.messages import counted
 from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Packing
 from dembound.table import Box
@@ -69,7 +70,7 @@ def _height(points: Points, x: float) -> float:
 def require_surface(points: Points) -> None:
     """Raise ValueError for points that are no surface from left to right."""
     if len(points) < 2:
-        raise ValueError(f"surface: has {len(points)} points, must have at least two")
+        raise ValueError(f"surface: has {counted(len(points), 'point')}, must have at least two")
     if any(after < before for (before, _), (after, _) in pairwise(points)):
         raise ValueError("surface: must go from left to right, so that no x is less than the one before")
 

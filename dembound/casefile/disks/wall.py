@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
 from dembound.casefile.disks.surface import points_in_file
 from dembound.casefile.disks.targets import with_history
-from dembound.casefile.messages import numbered
+from dembound.casefile.messages import counted, numbered
 from dembound.casefile.types import LAWS
 from dembound.holes.polygon import Points
 from dembound.table import FileName, Table, quantity
@@ -23,7 +23,7 @@ class Wall(Table):
     """A rigid line that the body's disks touch from both sides, also beyond the box of disks: PFC's wall.
 
     Disks are pushed away, rub with Coulomb's friction, and never stick. The wall does not move by itself: with a
-    velocity or waves it does as given, else it stands. In a static stage it stands.
+    velocity or waves it does as given, or as the ground beyond, else it stands. In a static stage it stands.
 
     Notes
     -----
@@ -40,6 +40,13 @@ class Wall(Table):
     )
     fric: float = quantity(
         0.0, unit="1", means="friction coefficient", help="friction coefficient between disks and wall", ge=0.0
+    )
+    rr_fric: float = quantity(
+        0.0,
+        unit="1",
+        means="friction coefficient",
+        help="resistance to rolling: the moment is at most this times R N of a disk; needs fric > 0",
+        ge=0.0,
     )
     kn: float | None = quantity(
         None,
@@ -61,6 +68,17 @@ class Wall(Table):
     velocity: Velocity | None = quantity(None, unit="m/s", means="velocity", help="constant velocity [vx, vy]")
     wave_x: str | None = quantity(None, unit="1", help="name of the wave of its velocity along x")
     wave_y: str | None = quantity(None, unit="1", help="name of the wave of its velocity along y")
+    moves: Literal["incident"] | None = quantity(
+        None,
+        unit="1",
+        help='"incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`',
+    )
+    at: tuple[float, float] | None = quantity(
+        None,
+        unit="m",
+        means="place",
+        help="place in the ground whose motion it has; absent: the middle of its box",
+    )
     until: float | None = quantity(
         None, unit="s", help="time at which it stops; absent: it moves to the end of the run", gt=0.0
     )
@@ -85,15 +103,22 @@ class Wall(Table):
     def _problems(self) -> Iterator[str]:
         """Mistakes in the points and the motion."""
         if not 2 <= len(self._line) <= MOST_POINTS:
-            yield f"points: has {len(self._line):,} points, must have 2 to {MOST_POINTS:,}"
+            yield f"points: has {counted(len(self._line), 'point')}, must have 2 to {MOST_POINTS:,}"
         for number, (one, two) in enumerate(pairwise(self._line), start=1):
             if one == two:
                 yield f"points: has point {number} twice in a row, at ({one[0]:.6g}, {one[1]:.6g}) m; leave one out"
         for key in ("wave_x", "wave_y"):
             if self.velocity is not None and getattr(self, key) is not None:
                 yield f"{key}: is not allowed together with velocity"
-        if self.until is not None and not self.moves:
+        for key in ("velocity", "wave_x", "wave_y", "until") if self.moves else ():
+            if getattr(self, key) is not None:
+                yield f"{key}: is not allowed together with moves"
+        if self.at is not None and self.moves is None:
+            yield 'at: is of a wall that moves as the ground; give moves = "incident"'
+        if self.until is not None and not self.is_driven and not self.moves:
             yield "until: is of a wall that moves; give velocity, wave_x or wave_y"
+        if self.rr_fric > 0.0 and self.fric == 0.0:
+            yield "rr_fric: is of disks that roll, but with fric = 0 they slide"
 
     @property
     def line(self) -> Points:
@@ -111,9 +136,15 @@ class Wall(Table):
         return {axis: name for axis, name in enumerate((self.wave_x, self.wave_y)) if name is not None}
 
     @property
-    def moves(self) -> bool:
-        """Whether it moves in the run."""
+    def is_driven(self) -> bool:
+        """Whether it moves by a velocity or waves of its own."""
         return self.velocity is not None or bool(self.waves)
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Place (m) whose free field it moves with: as given, or the middle of its box."""
+        (left, right), (bottom, top) = ((min(each), max(each)) for each in zip(*self._line, strict=True))
+        return self.at or (0.5 * (left + right), 0.5 * (bottom + top))
 
 
 def wall_problems(tables: Mapping[str, Any]) -> Iterator[str]:
@@ -127,11 +158,29 @@ def wall_problems(tables: Mapping[str, Any]) -> Iterator[str]:
                 f'{place}: material.law is "{material.law}", under which contacts never open, so that disks cannot '
                 f"leave a wall; give law = {with_history()}"
             )
+        if wall.moves and not _knows_ground(tables):
+            yield (
+                f'{place}.moves: is "incident", but the motion of the ground beyond is not known; give boundary.bottom '
+                'a wave, with type "velocity" or beside sides of type "free_field" or "outside", or give [incident]'
+            )
         for side, table in tables["boundary"].items():
             if table and table.is_periodic and side in ("left", "bottom"):
                 yield f'{place}: boundary.{side} is "periodic", and a wall is not repeated; leave one of them out'
         if material and wall.kn is None and not _gives_stiffness(material, layers):
             yield f"{place}.kn: is missing; the contacts of material have no emod from which it follows"
+
+
+def _knows_ground(tables: Mapping[str, Any]) -> bool:
+    """Whether the motion of the ground beyond is known: of a bottom with a velocity, or of a free field under waves."""
+    sides = tables["boundary"]
+    if "bottom" in sides and sides["bottom"] is None:
+        return True  # invalid on its own
+    bottom = sides.get("bottom")
+    lateral = [sides[side] for side in ("left", "right") if sides.get(side)]
+    beyond = bottom is not None and bottom.is_outside
+    beside = any(table.needs_column or (beyond and table.is_outside) for table in lateral)
+    driven = bottom is not None and bool(bottom.waves) and (beside or bool(bottom.prescribed(1)))
+    return driven or tables["incident"] is not None
 
 
 def _gives_stiffness(material: Any, layers: Any) -> bool:

@@ -11,12 +11,12 @@ import numpy as np
 
 from dembound.casefile.disks.wall import Wall
 from dembound.disks.body import DiskBody
+from dembound.kernels import wall_contacts as contacts
 from dembound.kernels import walls as kernel
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.tables import Unloading, Walls
 from dembound.motion.part import NO_CRACKS, Cracks, Part
 from dembound.motion.state import Arrays, State
-from dembound.waves.wave import Wave
 
 SKIN = 1.0
 """Distance from walls, in mean diameters, up to which disks are listed; others are only looked at after as much motion.
@@ -31,18 +31,19 @@ MOST_RANGES = 4096
 
 
 class Touching(NamedTuple):
-    """Contacts of disks with walls: disk (m,) ascending, and kept (m, MOST, KEPT), see kernels/walls.py."""
+    """Contacts of disks with walls: disk (m,) ascending, and kept (m, MOST, KEPT), see kernels/wall_contacts.py."""
 
     disk: np.ndarray
     kept: np.ndarray
 
 
-def path_of(walls: Sequence[Wall], waves: dict[str, Wave], steps: int, time_step: float) -> np.ndarray:
+def path_of(scene: DiskBody, steps: int, time_step: float) -> np.ndarray:
     """Displacements (rows, w, 2) m of walls before each step (s), of which the last two are equal.
 
-    Velocities are those in the middle of steps.
+    Velocities are those in the middle of steps; none of walls that follow disks.
     """
-    if not any(wall.moves for wall in walls):
+    walls, waves = scene.case.wall, scene.case.wave
+    if not any(wall.is_driven or wall.moves for wall in walls):
         return np.zeros((1, len(walls), 2))
     times = (np.arange(steps) + 0.5) * time_step
     velocity = np.zeros((steps + 1, len(walls), 2))
@@ -54,7 +55,59 @@ def path_of(walls: Sequence[Wall], waves: dict[str, Wave], steps: int, time_step
             own[:, axis] = waves[name].velocity(times)
         if wall.until is not None:
             own[times > wall.until] = 0.0
+        if wall.moves and not follows(scene, wall):
+            own[:] = _of_ground(scene, wall, times)
     return np.concatenate([np.zeros((1, len(walls), 2)), time_step * np.cumsum(velocity, axis=0)])
+
+
+def bottom_waves(scene: DiskBody) -> dict[int, str]:
+    """Names of the waves of the velocity of a driven bottom, by axis; empty where it does not prescribe it."""
+    bottom = scene.case.side("bottom")
+    held = bottom.prescribed(1)
+    return {axis: name for axis, name in enumerate(bottom.waves_by_axis(1)) if name is not None and axis in held}
+
+
+def follows(scene: DiskBody, wall: Wall) -> bool:
+    """Whether a wall moves as disks of a free-field column do."""
+    return wall.moves is not None and not bottom_waves(scene) and scene.case.incident is None
+
+
+def _of_ground(scene: DiskBody, wall: Wall, times: np.ndarray) -> np.ndarray:
+    """Velocities (k, 2) m/s at times (k,) s of a wall that moves as the bottom, or as the undisturbed ground."""
+    if waves := bottom_waves(scene):
+        found = [scene.case.wave[waves[axis]].velocity(times) if axis in waves else 0.0 * times for axis in (0, 1)]
+        return np.stack(found, axis=1)
+    x, y = wall.place
+    assert scene.outside is not None
+    assert scene.ground_waves is not None
+    surface = scene.outside.free_surface
+    place = np.array([[x, y if surface is None or scene.outside.levels else min(y, surface[0])]])
+    motion: np.ndarray = scene.ground_waves.motion("velocity", times, place)[:, 0, :2]
+    return motion
+
+
+def leaders(scene: DiskBody) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The disks of free-field columns that walls follow: first of each wall (w + 1,), slots and shares (f,).
+
+    Those less than a diameter above and below the place, weighted by mass and so that the mean is that at its height;
+    at the ends of a column where that does not reach there.
+    """
+    counts, slots, shares = [0], [], []
+    for wall in scene.case.wall:
+        counts.append(0)
+        if follows(scene, wall):
+            x, y = wall.place
+            disks = np.arange(scene.disk_count)[scene.seams[-1 if x > scene.case.middle else 0].disks]
+            up = scene.assembly.positions[disks, 1]
+            away = np.abs(up - np.clip(y, up.min(), up.max())) / scene.ground.brick.mean_diameter
+            near = np.flatnonzero(away < 1.0)
+            weight = (1.0 - away[near]) * scene.mass[disks[near]]
+            slots.append(scene.layout.slot[disks[near]])
+            shares.append(weight / weight.sum())
+            counts[-1] = len(near)
+    joined = (np.concatenate([[], *each]) for each in (slots, shares))
+    slot, share = next(joined).astype(np.int64), next(joined)
+    return np.cumsum(counts), slot, share
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,14 +173,15 @@ class WallPart(Part):
         self._scene, self._time_step, self._fastest = scene, time_step, fastest
         self._lines = Lines.of(walls)
         steps = 1 if stand else int(np.ceil(case.run.duration / time_step)) + 2
-        self._path = np.zeros((1, len(walls), 2)) if stand else path_of(walls, dict(case.wave), steps, time_step)
+        self._path = np.zeros((1, len(walls), 2)) if stand else path_of(scene, steps, time_step)
+        self._follow, self._leader, self._share = leaders(scene)
         self._given = np.array([[wall.kn or 0.0, wall.ks or 0.0] for wall in walls])
-        self._friction = np.array([wall.fric for wall in walls])
+        self._friction, self._rolling = np.array([[wall.fric, wall.rr_fric] for wall in walls]).T.copy()
         self._dashpot = np.array([2.0 * wall.dp_nratio for wall in walls])
         self._record = np.zeros((ROWS, len(walls), 4))
         self._moved, self._way, self._step = np.zeros(2), np.zeros(2), np.zeros(1, dtype=np.int64)
         self._lost, self._total = np.zeros((CHUNKS, kernel.LOST)), np.zeros((CHUNKS, len(walls), 2))
-        known = touching or Touching(np.zeros(0, dtype=np.int64), np.zeros((0, kernel.MOST, kernel.KEPT)))
+        known = touching or Touching(np.zeros(0, dtype=np.int64), np.zeros((0, contacts.MOST, contacts.KEPT)))
         slots = scene.layout.slot[known.disk]
         order = np.argsort(slots)
         self._list(scene.layout.spread(displacement), 0, slots[order], known.kept[order])
@@ -163,12 +217,12 @@ class WallPart(Part):
         bins = lines.ranges(shift, reach + float(disks["radius"].max()))
         counts = np.zeros(len(disks["slot"]), dtype=np.int64)
         columns = (u, disks["slot"], disks["place"], disks["radius"], reach, bins, lines.ends, shift, counts)
-        kernel.near_disks(*columns, nothing)
+        contacts.near_disks(*columns, nothing)
         segment = np.zeros(int(counts.sum()), dtype=np.int64)
         if segment.size:
-            kernel.near_disks(*columns, segment)
+            contacts.near_disks(*columns, segment)
         near = np.flatnonzero(counts)
-        own = np.zeros((len(near), kernel.MOST, kernel.KEPT))
+        own = np.zeros((len(near), contacts.MOST, contacts.KEPT))
         there = np.isin(slots, disks["slot"][near])
         own[np.searchsorted(disks["slot"][near], slots[there])] = kept[there]
         self._way[:] = 0.0, reach
@@ -187,8 +241,12 @@ class WallPart(Part):
             wall=self._lines.wall,
             given=self._given,
             friction=self._friction,
+            rolling=self._rolling,
             dashpot=self._dashpot,
             path=self._path,
+            follow=self._follow,
+            leader=self._leader,
+            share=self._share,
             fastest=self._fastest,
             kept=kept,
             force=np.zeros((3, len(near))),
@@ -231,7 +289,7 @@ class WallPart(Part):
     @property
     def touching(self) -> Touching:
         """The contacts of the last step, by disk."""
-        touch = self._walls.kept[:, 0, kernel.PUSH] > 0.0
+        touch = self._walls.kept[:, 0, contacts.PUSH] > 0.0
         disk = self._scene.layout.node[self._walls.slot[touch]]
         order = np.argsort(disk)
         return Touching(disk[order], self._walls.kept[touch][order])
@@ -239,6 +297,11 @@ class WallPart(Part):
     def samples(self, steps: np.ndarray) -> np.ndarray:
         """Displacement (m) and force (N), along x and y, of and on each wall (k, w, 4) in some of the last steps."""
         return self._record[steps % ROWS]
+
+    @property
+    def _rows_now(self) -> list[int]:
+        """Rows of the path that the next step reads: before the last step, after it, and the end."""
+        return [min(int(self._step[0]) + more, len(self._path) - 1) for more in (0, 1, len(self._path))]
 
     def place(self, step: int) -> np.ndarray:
         """Displacement (w, 2) m of each wall before a step."""
@@ -271,12 +334,14 @@ class WallPart(Part):
             "moved": self._moved,
             "way": self._way,
             "step": self._step,
+            "path": self._path[self._rows_now],
         }
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         for name in ("moved", "way", "step"):
             getattr(self, f"_{name}")[...] = saved[name]
+        self._path[self._rows_now] = saved["path"]
         near = np.searchsorted(self._disks["slot"], saved["slot"])
         self._walls = self._listed(near, *(saved[name].copy() for name in ("start", "segment", "kept")))
         self._walls.force[...] = saved["force"]

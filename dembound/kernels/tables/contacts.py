@@ -150,9 +150,10 @@ class Walls(NamedTuple):
     (2, m) m, its centre before displacements; spring (m,) N/m, normal stiffness where walls give none. bound :
     (chunks + 1,) first disk of each chunk, which slots alone decide. start : (m + 1,) rows of the segments near each
     disk in segment (e,). ends (s, 4) m, x and y of both ends of each segment; wall (s,) of the W walls.
-    given (W, 2) N/m, normal and shear stiffness, 0 where absent; friction (W,); dashpot (W,), 2β. path : (rows, W, 2)
-    m, displacement of each wall before each step, of which the last two rows are equal. fastest : (chunks,) m/s of
-    disks after a step.
+    given (W, 2) N/m, normal and shear stiffness, 0 where absent; friction and rolling (W,); dashpot (W,), 2β. path :
+    (rows, W, 2) m, displacement of each wall before each step, of which the last two rows are equal. follow : (W + 1,)
+    wall w moves by the mean velocity of the disks in slots leader[follow[w]:follow[w + 1]] with their share. fastest :
+    (chunks,) m/s of disks after a step.
     kept : (m, MOST, KEPT) contacts of the last step. force (3, m), load (3, m), lost (chunks, 3), total (chunks, W, 2)
     : work space. record : (R, W, 4) displacement (m) of each wall and force (N) on it in the last R steps. moved :
     (2,) J that walls have supplied as they move, as `Log.work`. way : (2,) m that disks and walls may have come since
@@ -172,8 +173,12 @@ class Walls(NamedTuple):
     wall: np.ndarray
     given: np.ndarray
     friction: np.ndarray
+    rolling: np.ndarray
     dashpot: np.ndarray
     path: np.ndarray
+    follow: np.ndarray
+    leader: np.ndarray
+    share: np.ndarray
     fastest: np.ndarray
     kept: np.ndarray
     force: np.ndarray

@@ -10,11 +10,12 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping import Mechanisms, Rayleigh
+from dembound.disks.loose import reserve
 from dembound.disks.material.layered import Joint, LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.scene import DiskScene
-from dembound.disks.stability import reserve, viscous_share
+from dembound.disks.stability import viscous_share
 from dembound.kinds.disks.micro_macro import Own, brick_quantities, materials_of
 from dembound.words import Entries, Quantity, in_one_unit, numbers, percent, sentences, with_unit
 

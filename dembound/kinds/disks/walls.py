@@ -8,6 +8,7 @@ import numpy as np
 from dembound.casefile.disks.wall import Wall
 from dembound.casefile.messages import counted, numbered
 from dembound.disks.scene import DiskScene
+from dembound.disks.stepping.walls import bottom_waves
 from dembound.errors import CaseError
 from dembound.words import Entries, in_one_unit, percent, with_unit
 
@@ -70,20 +71,26 @@ def wall_facts(scene: DiskScene) -> Entries:
         length = float(np.hypot(*np.diff(line, axis=0).T).sum())
         kn = {wall.kn or 2.0 * each.moduli.emod for each in scene.ground.materials}
         texts, unit = in_one_unit([min(kn), max(kn)][: len(kn)], "N/m")
+        rolling = f", and roll at {wall.rr_fric:g} R of it" if wall.rr_fric else ""
         parts = [
             f"{counted(len(line) - 1, 'segment')}, {with_unit(length, 'm')}",
-            f"k_n = {'…'.join(texts)} {unit}, friction {wall.fric:g}",
+            f"k_n = {'…'.join(texts)} {unit}, friction {wall.fric:g}{rolling}",
         ]
         if wall.dp_nratio:
             parts.append(f"dashpots of {percent(wall.dp_nratio)} of the critical one")
         touching = int((overlaps(scene.before or scene, wall) > -TOUCHES).sum())
         parts += [f"{counted(touching, 'disk')} touch it at the start" if touching != 1 else "one disk touches it"]
-        yield f"wall {wall.name}", "; ".join([*parts, _motion(wall)])
+        yield f"wall {wall.name}", "; ".join([*parts, _motion(scene, wall)])
 
 
-def _motion(wall: Wall) -> str:
+def _motion(scene: DiskScene, wall: Wall) -> str:
     """How a wall moves, in words."""
-    if not wall.moves:
+    if wall.moves and bottom_waves(scene):
+        return "it moves as the bottom"
+    if wall.moves:
+        x, y = wall.place
+        return f"it moves as the free field at ({x:.4g}, {y:.4g}) m"
+    if not wall.is_driven:
         return "it stands"
     until = "" if wall.until is None else f" until {with_unit(wall.until, 's')}"
     if wall.velocity is not None:

@@ -52,7 +52,7 @@ def test_a_surface_may_stand_in_a_file(tmp_path: Path) -> None:
 
 def test_mistakes_have_a_line_each(tmp_path: Path) -> None:
     for points, line in (
-        ([[0.0, 6.0]], "ground.surface: has 1 points, must have at least two"),
+        ([[0.0, 6.0]], "ground.surface: has 1 point, must have at least two"),
         ([[0.0, 6.0], [5.0, 2.0], [4.0, 2.0]], "ground.surface: must go from left to right, so that no x is less than"),
         ([[1.0, 6.0], [10.0, 2.0]], "ground.surface: goes from x = 1 to 10 m, must reach over the disks, 0 to 10 m"),
         ([[0.0, 7.0], [10.0, 2.0]], "ground.surface: is 7 m high, but packing.size ends at y = 6 m"),
@@ -71,7 +71,7 @@ def test_mistakes_have_a_line_each(tmp_path: Path) -> None:
     weight = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
     stage = {"static.boundary": {side: {"type": "roller"} for side in ("left", "right", "bottom")}}
     (found,) = problems_in(lambda: ground(**{"ground.surface": [[0.0, 6.0]]}, **beyond, **weight, **stage))
-    assert found.startswith("ground.surface: has 1 points")  # nothing of its sides at rest, which follow from it
+    assert found.startswith("ground.surface: has 1 point")  # nothing of its sides at rest, which follow from it
     for text, line in (
         ("0,6\n10,six\n", "is not two columns of numbers"),
         ("0,6,1\n10,2,1\n", "has 3 columns, must have two, x and y in m"),

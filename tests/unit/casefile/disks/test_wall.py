@@ -29,7 +29,7 @@ def test_disks_touch_walls_from_the_start_and_waves_move_them() -> None:
     case = small(LOOSE | {"wall": [FLOOR | {"wave_y": "push", "until": 0.05}]})
     assert not case.begins_elastic
     assert small(LOOSE | {"wall": []}).begins_elastic
-    assert case.wall[0].moves
+    assert case.wall[0].is_driven
     assert case.wall[0].waves == {1: "push"}
     assert case.moving == {"push"}
 
@@ -37,13 +37,20 @@ def test_disks_touch_walls_from_the_start_and_waves_move_them() -> None:
 @pytest.mark.parametrize(
     ("wall", "line"),
     [
-        ({"points": [[0.0, 0.0]]}, "wall[1, floor].points: has 1 points, must have 2 to 100,000"),
+        ({"points": [[0.0, 0.0]]}, "wall[1, floor].points: has 1 point, must have 2 to 100,000"),
         (
             {"points": [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]]},
             "wall[1, floor].points: has point 1 twice in a row, at (0, 0)",
         ),
         ({"velocity": [1.0, 0.0], "wave_x": "push"}, "wall[1, floor].wave_x: is not allowed together with velocity"),
         ({"until": 0.1}, "wall[1, floor].until: is of a wall that moves; give velocity, wave_x or wave_y"),
+        (
+            {"moves": "incident"},
+            'wall[1, floor].moves: is "incident", but the motion of the ground beyond is not known',
+        ),
+        ({"moves": "incident", "until": 0.1}, "wall[1, floor].until: is not allowed together with moves"),
+        ({"at": [0.0, 0.0]}, "wall[1, floor].at: is of a wall that moves as the ground; give moves"),
+        ({"rr_fric": 0.3}, "wall[1, floor].rr_fric: is of disks that roll, but with fric = 0 they slide"),
         ({"wave_x": "pull"}, 'wall[1, floor].wave_x: "pull" is not a wave of this case; defined: push'),
     ],
 )

@@ -7,8 +7,8 @@ from small_cases import small
 from dembound.disks.scene import build
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.stepping.walls import Lines, path_of
-from dembound.kernels.walls import OVERLAP, PUSH
-from dembound.kernels.walls import WALL as NUMBER
+from dembound.kernels.wall_contacts import OVERLAP, PUSH
+from dembound.kernels.wall_contacts import WALL as NUMBER
 
 LOOSE = {
     "packing": {"pattern": "A", "size": [2.0, 1.0], "radius": 0.25},
@@ -24,7 +24,7 @@ LOOSE = {
 
 def test_walls_move_by_their_velocities_in_the_middle_of_steps() -> None:
     case = small(LOOSE)
-    path = path_of(case.wall, dict(case.wave), 10, 0.01)
+    path = path_of(build(case), 10, 0.01)
     assert path.shape == (12, 2, 2)
     assert (path[-1] == path[-2]).all()
     np.testing.assert_allclose(path[:11, 1], 0.01 * np.arange(11)[:, None] * (2.0, 1.0))
@@ -32,6 +32,27 @@ def test_walls_move_by_their_velocities_in_the_middle_of_steps() -> None:
     moved = np.where(middles <= 0.035, case.wave["push"].velocity(middles), 0.0)
     np.testing.assert_allclose(path[1:11, 0, 1], 0.01 * np.cumsum(moved))
     assert not path[:, 0, 0].any()
+
+
+def test_a_wall_moves_with_a_driven_bottom_or_an_incident_wave_and_its_reflection() -> None:
+    wall = {"name": "rock", "points": [[30.0, 0.0], [40.0, 20.0]], "moves": "incident"}
+    words = {"packing": {"pattern": "A", "size": [4.0, 4.0], "radius": 0.25}, "wall": [wall]}
+    words["material"] = {"density": 2500.0, "p_wave_speed": 1e3, "law": "linearpbond", "fric": 0.5}
+    driven = {"type": "velocity", "wave_s": "push", "hold": ["normal", "shear"]}
+    path = path_of(build(small(LOOSE | words | {"boundary": {"bottom": driven}})), 10, 0.01)
+    push = small(LOOSE).wave["push"].velocity((np.arange(10) + 0.5) * 0.01)
+    np.testing.assert_allclose(path[1:11, 0, 0], 0.01 * np.cumsum(push))
+    assert not path[..., 1].any()
+
+    beyond = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    words |= {"boundary": beyond, "incident": {"type": "p", "angle": 0.0, "wave": "push"}}
+    for at, height in (([0.0, 2.0], 2.0), ([0.0, 3.0], 3.0), (None, 4.0)):  # the middle is above the surface
+        scene = build(small(LOOSE | words | {"wall": [wall | ({"at": at} if at else {})]}))
+        times = (np.arange(100) + 0.5) * 1e-3
+        push = [scene.case.wave["push"].velocity(times - way / 1e3) for way in (height, 8.0 - height)]
+        path = path_of(scene, 100, 1e-3)
+        # the mass of disks ends half a disk of the surface off the box at most: 0.25 ms of a period of 100 ms
+        np.testing.assert_allclose(path[1:101, 0, 1], 1e-3 * np.cumsum(sum(push)), atol=2e-2 * path.max())
 
 
 def test_ranges_hold_all_segments_that_reach_into_them() -> None:

@@ -6,7 +6,7 @@ from small_cases import small
 
 from dembound.disks.scene import build
 from dembound.disks.stepping.system import DiskSystem
-from dembound.kernels.walls import NX, NY, PUSH, nearest
+from dembound.kernels.wall_contacts import NX, NY, PUSH, nearest
 
 R = 0.25
 ONE = {
@@ -38,7 +38,7 @@ def directions(*lines: list[list[float]]) -> list[float]:
     part = DiskSystem(scene, 1e-4).walls
     part.push(np.zeros((3, 1)))
     touch = part.touching
-    kept = touch.kept[0] if len(touch.disk) else np.zeros((0, 7))
+    kept = touch.kept[0] if len(touch.disk) else np.zeros((0, 8))
     return sorted(abs(float(np.degrees(np.arctan2(-c[NX], c[NY])))) for c in kept if c[PUSH] > 0.0)
 
 
