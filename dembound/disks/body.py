@@ -72,13 +72,13 @@ def layer_attributes(case: DiskCase) -> dict[str, Any]:
 
     Of either side also the numbers of its layers, from 1.
     """
-    if not case.joints:
+    if not case.layer_planes:
         return {}
     names = {"layer_names": [*case.layer_names]}
     if not case.is_unlike:
-        return names | {"joints": [*case.joints]}
+        return names | {"joints": [*case.layer_planes]}
     own = {f"{side}_layers": [1 + number for number in case.numbers_beside(side)] for side in case.sides_of_ground}
-    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in case.sides_of_ground}
+    joints = {f"{side}_joints": np.array(case.beside(side).layer_planes) for side in case.sides_of_ground}
     return names | {"meet": case.ground.meet} | own | joints
 
 
