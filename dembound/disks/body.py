@@ -214,9 +214,10 @@ class DiskBody(Scene):
         return self.assembly.size
 
     @property
-    def walls(self) -> Mapping[str, np.ndarray]:
-        """Points (p, 2) m of the walls that disks touch, by name."""
-        return {wall.name: np.array(wall.line) for wall in self.case.wall}
+    def lines(self) -> dict[str, dict[str, np.ndarray]]:
+        """Points (p, 2) m by name of the "walls" that disks touch, and of "joints"."""
+        walls = {wall.name: np.array(wall.line) for wall in self.case.wall}
+        return {"walls": walls, "joints": {joint.name: np.array(joint.points) for joint in self.case.joint}}
 
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once

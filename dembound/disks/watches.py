@@ -41,7 +41,7 @@ class FarDisks(Every):
         super().__init__(STEPS)
         _, low, _, high = scene.case.box
         self._height = scene.assembly.positions[:, 1]
-        lines = [low, *(float(line[:, 1].min()) for line in scene.walls.values())]
+        lines = [low, *(float(line[:, 1].min()) for line in scene.lines["walls"].values())]
         self._depth = min(lines) - (high - low)
         self._retires = retires
         self._moved_by_sides = np.isin(np.arange(scene.disk_count), scene.supports.node)

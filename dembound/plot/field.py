@@ -11,7 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.plot.disks import GROUP, ContinuumCells, Window, is_scattered, read_continuum, read_holes
-from dembound.plot.lines_of_ground import LayersOfSide, faults_in, foot_in, layers_in
+from dembound.plot.lines_of_ground import LayersOfSide, Segments, foot_in, layers_in, segments_in
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import (
     COMPONENTS,
@@ -54,8 +54,8 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
-    ground; foot, the height (m) below which motion of the continuum is without the free field; walls and faults:
-    points (k, 2) m of each wall and joint.
+    ground; foot, the height (m) below which motion of the continuum is without the free field; walls and joints:
+    points (k, 2) m of each; most_slip, m, the largest of joints in any snapshot.
     """
 
     positions: np.ndarray
@@ -70,7 +70,8 @@ class Disks:
     layers: tuple[LayersOfSide, ...] = ()
     foot: float | None = None
     walls: tuple[np.ndarray, ...] = ()
-    faults: tuple[np.ndarray, ...] = ()
+    joints: tuple[np.ndarray, ...] = ()
+    most_slip: float = 0.0
 
     @cached_property
     def own_window(self) -> Window:
@@ -130,7 +131,8 @@ class Field:
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
     of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
     moved (k, n, 2) and moved_beyond (k, m, 2) m, displacements with which disks and nodes are drawn, None for none;
-    walls (p, 2) m as they are drawn, None where they are at the start.
+    walls (p, 2) m as they are drawn, None where they are at the start; joints, segments each time, None where the
+    field has no time.
     """
 
     captions: list[str]
@@ -144,6 +146,7 @@ class Field:
     moved: np.ndarray | None = None
     moved_beyond: np.ndarray | None = None
     walls: tuple[np.ndarray, ...] | None = None
+    joints: tuple[Segments | None, ...] = (None,)
 
     @property
     def label(self) -> str:
@@ -162,6 +165,7 @@ def read_disks(file: h5py.File) -> Disks:
         if name.endswith(FREE_FIELD) and not np.array_equal(place, places[name.removesuffix(FREE_FIELD)])
     ]
     positions = file["particles/position"][:]
+    slipped = [segments_in(snapshot) for snapshot in snapshots_of(file)]
     span = float(np.ptp(positions, axis=0).max())
     return Disks(
         positions=positions,
@@ -176,7 +180,8 @@ def read_disks(file: h5py.File) -> Disks:
         layers=tuple(layers_in(file)),
         foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
-        faults=faults_in(file),
+        joints=tuple(group["points"][:] for group in file.get("joints", {}).values()),
+        most_slip=max((float(np.abs(each.slip).max(initial=0.0)) for each in slipped if each is not None), default=0.0),
     )
 
 
@@ -218,6 +223,7 @@ class FieldInRecord:
             name=self.words,
             unit=self.unit,
             sense=self.sense,
+            joints=tuple(map(segments_in, chosen)),
         )
 
 

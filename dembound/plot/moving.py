@@ -16,6 +16,7 @@ from dembound.plot.bar import FIELDS, mark_damage, read_course
 from dembound.plot.disks import GROUP, Window
 from dembound.plot.field import OF_THE_RUN, Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.histories import plot_histories
+from dembound.plot.lines_of_ground import segments_in
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
 from dembound.plot.style import (
     COLOURS,
@@ -293,5 +294,10 @@ class MovingScene:
             beyond = self._exaggerate * group[f"{GROUP}/displacement"][:, :2][None]
         walls = walls_at(group.file, float(group.attrs["time"]), self._exaggerate)
         return replace(
-            shown, cracks=cracks, moved=moved[None], moved_beyond=beyond, walls=tuple(walls.values()) or None
+            shown,
+            cracks=cracks,
+            moved=moved[None],
+            moved_beyond=beyond,
+            walls=tuple(walls.values()) or None,
+            joints=(segments_in(group, self._exaggerate),),
         )

@@ -20,7 +20,7 @@ from dembound.plot.lines import (
     ABOVE_DISKS,
     LETTER_WIDTH,
     NAME_HEIGHT,
-    mark_faults,
+    mark_joints,
     mark_layers,
     mark_walls,
 )
@@ -211,8 +211,7 @@ def draw_panel(
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
     mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
-    if shown.moved is None:
-        mark_faults(panel, disks)
+    mark_joints(panel, disks, shown.joints[index])
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi

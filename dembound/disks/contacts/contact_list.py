@@ -48,8 +48,8 @@ class ContactList(RenewedList):
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
-        relaxation arms, see `Contacts`. beside : (m,) number of the joint each particle is beside, opposite on its two
-        sides, else 0: particles of opposite numbers never touch. None: there are no joints.
+        relaxation arms, see `Contacts`. beside : (m, k) numbers of the joints each particle is beside, opposite on
+        their two sides, else 0: particles of opposite numbers never touch. None: there are no joints.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class ContactList(RenewedList):
         self.searches = self.limits.geometry != REFERENCE
         self._beside = None
         if beside is not None:
-            self._beside = np.zeros(self._slots.stop, dtype=np.int64)
+            self._beside = np.zeros((self._slots.stop, beside.shape[1]), dtype=np.int64)
             self._beside[self._slot] = beside
         self.skin = SKIN * ground.brick.mean_diameter
         self.time_step = 0.0

@@ -94,7 +94,8 @@ class RenewedList(PairList):
         if self._beside is None:
             return keys
         one, other = self._beside[pairs_of(keys, self._slots.stop)[0].T]
-        return keys[(one != -other) | (one == 0)]
+        apart = (one[:, :, None] == -other[:, None, :]) & (one[:, :, None] != 0)
+        return keys[~apart.any(axis=(1, 2))]
 
     def _met(self, keys: np.ndarray, source: np.ndarray, *, shares: bool) -> Pairs:
         """Pairs (k,) of some keys that are not listed; contacts of the brick that had parted have their constants.

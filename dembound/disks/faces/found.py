@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.joint import Joint
+from dembound.casefile.disks.joint import Joint, ends_on
 from dembound.disks.faces.cells import intervals
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.packings.tiling import Assembly
@@ -20,23 +20,31 @@ BESIDE = 1.5
 NEAR = 2.5
 """Distance from a joint, over the largest radius, within which disks may have a part of its line."""
 
-LOOSE = 10
-"""Disks of a piece that the joint cuts off and that counts as one of its other side, if there are fewer."""
+LOOSE = 6
+"""Disks of a piece that the joint cuts off and that counts as one of its other side, if there are fewer.
+
+The smallest blocks between joints, of three diameters each way, have some nine."""
+
+AT_END = 4.0
+"""Distance from an end on another joint, over the largest diameter, within which disks beyond that are left out."""
 
 
 @dataclass(frozen=True, eq=False)
 class Faces:
     """The m faces of a joint, those of the disks on the left of its line before those on the right.
 
+    Also those of several joints of the same constants, see `merged`, whose sides are not in one array.
+
     Attributes
     ----------
-    joint : its table. split : number of faces on the left. disk : (m,) of each, among the scene's.
-    ends : (m, 2, 2) m, ends of each face at the start. along : (m, 2) unit vector along the line.
+    joints : their tables; part : (m,) number of that of each face. split : number of faces on the left. disk : (m,) of
+    each, among the scene's. ends : (m, 2, 2) m, of each face at the start. along : (m, 2) unit vector along the line.
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
     removed : (2,) Pa/m, normal and shear stiffness per area of the contacts that it replaces. cut : number of these.
     """
 
-    joint: Joint
+    joints: tuple[Joint, ...]
+    part: np.ndarray
     split: int
     disk: np.ndarray
     ends: np.ndarray
@@ -44,6 +52,11 @@ class Faces:
     side: np.ndarray
     removed: np.ndarray
     cut: int
+
+    @property
+    def joint(self) -> Joint:
+        """The table of the only joint, or the first of the same constants."""
+        return self.joints[0]
 
     @property
     def length(self) -> float:
@@ -58,23 +71,34 @@ class Faces:
         return found
 
 
-def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: slice, box: Box) -> Faces:
+def faces_of(
+    joint: Joint, ground: PackedMaterial, assembly: Assembly, body: slice, box: Box, earlier: Sequence[Faces] = ()
+) -> Faces:
     """The faces of a joint in a body: the range of its disks, in a box left, bottom, right, top (m).
 
-    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it.
+    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it. Where it
+    ends on the line of an earlier joint, it ends there, and has no faces of disks beyond.
     """
-    line = _Line(np.array(joint.points), box)
+    line, largest = _Line(np.array(joint.points), box), 2.0 * float(assembly.radii.max())
+    distance, place = line.nearest(assembly.positions)
+    beyond = np.zeros(len(distance), dtype=np.bool_)
+    for other in earlier:
+        for end in np.flatnonzero(ends_on(np.array(joint.points), np.array(other.joint.points), 0.5 * largest)):
+            near_end = (place if end == 0 else line.length - place) < AT_END * largest
+            beyond |= near_end & _is_across(other, line.points[[0, 1] if end == 0 else [-1, -2]], assembly, box)
+            line.open[end] = True
     distance, place = line.nearest(assembly.positions)
     within = np.zeros(len(distance), dtype=np.bool_)
     within[body] = (place[body] > 0.0) & (place[body] < line.length)
     side = np.where(distance >= 0.0, 1, -1)
-    side = np.where(within & (np.abs(distance) <= 2.0 * BESIDE * float(assembly.radii.max())), side, 0)
+    side = np.where(within & ~beyond & (np.abs(distance) <= BESIDE * largest), side, 0)
     side = _by_contacts(assembly, side)
     crossing = side[assembly.pairs].prod(axis=1) < 0
     touching = np.zeros(len(side), dtype=np.bool_)
     touching[assembly.pairs.ravel()] = True
     near = np.abs(distance) <= NEAR * float(assembly.radii.max())
     near[: body.start] = near[body.stop :] = False
+    near &= ~beyond
     found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     split = 0
     for way in (1, -1):
@@ -82,10 +106,20 @@ def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: sli
         found += line.faces(own, side, assembly.positions, assembly.radii)
         split = sum(len(each[0]) for each in found) if way == 1 else split
     disk, ends, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    faces = Faces(joint, split, disk, ends, along, side.astype(np.int8), np.zeros(2), int(crossing.sum()))
+    part = np.zeros(len(disk), dtype=np.int64)
+    faces = Faces((joint,), part, split, disk, ends, along, side.astype(np.int8), np.zeros(2), int(crossing.sum()))
     if 0 < split < len(disk):
         faces = replace(faces, removed=_stiffness(faces, ground, assembly, crossing))
     return faces
+
+
+def _is_across(other: Faces, way: np.ndarray, assembly: Assembly, box: Box) -> np.ndarray:
+    """Disks (n,) on the other side of a joint than the second of two points (2, 2) m, of which the first is on it."""
+    line = _Line(np.array(other.joint.points), box)
+    distance, _ = line.nearest(np.vstack([0.5 * (way[0] + way[1]), assembly.positions]))
+    side = np.where(other.side != 0, other.side, np.sign(distance[1:]))
+    across: np.ndarray = side * np.sign(distance[0]) < 0.0
+    return across
 
 
 def with_joints(
@@ -95,26 +129,67 @@ def with_joints(
 
     begin : number of the first disk of the body, which follows those of columns.
     """
-    body = slice(begin, len(assembly.radii))
-    faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box) for joint in case.joint)
-    if not faces:
-        return assembly, ()
-    crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
-    left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
-    return left, faces
+    body, found = slice(begin, len(assembly.radii)), list[Faces]()
+    for joint in case.joint:
+        found.append(faces_of(joint, ground, assembly, body, case.packing.box, found))
+        crossing = found[-1].side[assembly.pairs].prod(axis=1) < 0
+        assembly = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
+    for group in alike(found) if len(found) > 1 else ():  # contacts of one line are too few for a mean
+        removed = np.average([each.removed for each in group], axis=0, weights=[each.length for each in group])
+        found = [replace(each, removed=removed) if each in group else each for each in found]
+    return assembly, tuple(found)
+
+
+def alike(faces: Sequence[Faces]) -> list[list[Faces]]:
+    """The joints of the same constants together, as those of a set, in the order of the first of each."""
+    groups: dict[tuple[object, ...], list[Faces]] = {}
+    for each in faces:
+        groups.setdefault(each.joint.constants, []).append(each)
+    return list(groups.values())
+
+
+def merged(faces: Sequence[Faces]) -> tuple[Faces, ...]:
+    """The faces of all joints, those of the same constants as one."""
+    return tuple(_as_one(group) for group in alike(faces))
+
+
+def _as_one(faces: Sequence[Faces]) -> Faces:
+    """The faces of several joints of the same constants as those of one."""
+    if len(faces) == 1:
+        return faces[0]
+    order = [(each, slice(0, each.split)) for each in faces] + [(each, slice(each.split, None)) for each in faces]
+    number = {id(each): k for k, each in enumerate(faces)}
+    return Faces(
+        joints=tuple(each.joint for each in faces),
+        part=np.concatenate([np.full(len(each.disk[own]), number[id(each)]) for each, own in order]),
+        split=sum(each.split for each in faces),
+        disk=np.concatenate([each.disk[own] for each, own in order]),
+        ends=np.concatenate([each.ends[own] for each, own in order]),
+        along=np.concatenate([each.along[own] for each, own in order]),
+        side=np.zeros(0, dtype=np.int8),
+        removed=faces[0].removed,
+        cut=sum(each.cut for each in faces),
+    )
 
 
 def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:
-    """Number (n,) of the joint that each disk is beside, negative on the right of it, else 0; None without any.
+    """Numbers (n, k) of the joints that each disk is beside, negative on the right of them, else 0; None without any.
 
-    Disks of opposite numbers never touch.
+    faces : of each joint. Disks of opposite numbers never touch.
     """
     if not faces:
         return None
-    found = np.zeros(len(faces[0].side), dtype=np.int64)
+    count = np.zeros(len(faces[0].side), dtype=np.int64)
+    columns = [np.zeros_like(count)]
     for number, each in enumerate(faces, start=1):
-        found = np.where(found == 0, number * each.side.astype(np.int64), found)
-    return found
+        beside = np.flatnonzero(each.side)
+        while len(columns) <= count[beside].max(initial=0):
+            columns.append(np.zeros_like(count))
+        for place in np.unique(count[beside]):
+            own = beside[count[beside] == place]
+            columns[place][own] = number * each.side[own].astype(np.int64)
+        count[beside] += 1
+    return np.stack(columns, axis=1)
 
 
 def _by_contacts(assembly: Assembly, side: np.ndarray) -> np.ndarray:

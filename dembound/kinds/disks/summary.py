@@ -19,7 +19,7 @@ from dembound.disks.stepping.side_watch import WARNS, lasting_force_warnings, re
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.watches import FarDisks, Turns, far_warnings, turn_warnings
 from dembound.kinds.disks.ground import describe_layers, packing_quantities
-from dembound.kinds.disks.joints import describe_joints, joint_warnings
+from dembound.kinds.disks.joints import describe_joints, first_events, joint_warnings
 from dembound.motion.part import MANY
 from dembound.motion.trackers import Run
 from dembound.results.reader import cracks_until, laws_in_words, open_record
@@ -58,6 +58,7 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
             )
     elif summary.get("joints"):
         facts += _broken(summary["cracks"], static)
+    facts += first_events(summary.get("joints", {}))
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts
