@@ -18,7 +18,7 @@ from dembound.words import with_unit
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
 """Drawing order of marks."""
 
-JOINT, THIN, WIDE = "#B00020", 1.0, 4.5
+JOINT, THIN, WIDE = "black", 1.0, 4.5
 """Colour of joints, and widths (points) without slip and with the largest of the run."""
 
 NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2

@@ -34,6 +34,6 @@ def test_under_a_given_pressure_it_rises(lab, end):
     np.testing.assert_allclose(opening, TAN * min(slip, end or np.inf) - push / kn, atol=1e-9 + 2e-4 * TAN * slip)
     entry = ledger.entries[-1]
     assert abs(entry.error) < 1e-6 * entry.supplied
-    # had friction the work that lifts the block, τ Δs in place of (τ − σ tan ψ) Δs, this were tan ψ/(μ − tan ψ) = 42 %
-    # of it, with the other sign; dashpots across the joint and pairs that part take 1.1 %
-    assert 0.0 <= entry.closing < 0.02 * entry.friction
+    # had friction the work that lifts the block, τ Δs in place of (τ − σ tan ψ) Δs, this were −tan ψ/(μ − tan ψ) =
+    # −42 % of it, as long as it rises; dashpots across the joint and pairs that part take 1.1 and 2.2 %
+    assert 0.0 <= entry.closing < 0.03 * entry.friction

@@ -20,6 +20,9 @@ KINK = 10.0
 APART = 3.0
 """Least distance of two joints over the mean diameter."""
 
+ALONG = 0.1
+"""Sine of the angle up to which a line goes on along another."""
+
 STRENGTH_KEYS = ("ten", "coh")
 """Keys of a joint's bonds, which need a friction that is left when they break."""
 
@@ -200,8 +203,16 @@ def _crosses_box(one: np.ndarray, other: np.ndarray, box: tuple[float, float, fl
 
 
 def ends_on(points: np.ndarray, other: np.ndarray, near: float) -> np.ndarray:
-    """Whether the first and the last of points (k, 2) m lie on another line (l, 2) m, to 1e-6 of a length near (m)."""
-    return np.array([distance_to(end[None], other)[0] < 1e-6 * near for end in points[[0, -1]]])
+    """Whether the first and the last of points (k, 2) m end on another line (l, 2) m, to 1e-6 of a length near (m).
+
+    Not where both go on along each other, as the parts of a line that a third one has cut.
+    """
+    found = np.zeros(2, dtype=np.bool_)
+    for number, (end, before) in enumerate((points[[0, 1]], points[[-1, -2]])):
+        for segment in (pair for pair in pairwise(other) if distance_to(end[None], np.array(pair))[0] < 1e-6 * near):
+            (ux, uy), (vx, vy) = end - before, segment[1] - segment[0]
+            found[number] |= abs(ux * vy - uy * vx) > ALONG * math.hypot(ux, uy) * math.hypot(vx, vy)
+    return found
 
 
 def distance_to(places: np.ndarray, line: np.ndarray) -> np.ndarray:

@@ -223,9 +223,12 @@ def _set(table: JointTable, tables: Mapping[str, Any], earlier: Earlier) -> tupl
 
 
 def _room(box: Box, boundary: Mapping[str, Boundary], diameter: float) -> np.ndarray:
-    """Corners (4, 2) m of a box, larger by a diameter where the ground ends, smaller by `APART` where it goes on."""
+    """Corners (4, 2) m of a box, smaller by `APART` at sides where the ground goes on, larger by twice that at others.
+
+    There lines end at each other outside of the ground, too, so that they have no ends beside it.
+    """
     beyond = [
-        -APART * diameter if side in boundary and goes_on(boundary[side]) else diameter
+        (-1.0 if side in boundary and goes_on(boundary[side]) else 2.0) * APART * diameter
         for side in ("left", "bottom", "right", "top")
     ]
     return corners_of(np.array(box) + np.array([-1.0, -1.0, 1.0, 1.0]) * beyond)

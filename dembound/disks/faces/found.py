@@ -86,7 +86,7 @@ def faces_of(
         for end in np.flatnonzero(ends_on(np.array(joint.points), np.array(other.joint.points), 0.5 * largest)):
             near_end = (place if end == 0 else line.length - place) < AT_END * largest
             beyond |= near_end & _is_across(other, line.points[[0, 1] if end == 0 else [-1, -2]], assembly, box)
-            line.open[end] = True
+            line.open[end] = line.held[end] = True
     distance, place = line.nearest(assembly.positions)
     within = np.zeros(len(distance), dtype=np.bool_)
     within[body] = (place[body] > 0.0) & (place[body] < line.length)
@@ -230,10 +230,14 @@ def _stiffness(faces: Faces, ground: PackedMaterial, assembly: Assembly, crossin
 
 
 class _Line:
-    """A polyline of points (k, 2) m in a box, of which ends outside are cut off; ``length`` (m) is what is left."""
+    """A polyline of points (k, 2) m in a box, of which ends outside are cut off; ``length`` (m) is what is left.
+
+    open : whether each end is at a side of the box, or on another joint; held : whether it is on one.
+    """
 
     def __init__(self, points: np.ndarray, box: Box) -> None:
         begin, end = points[0], points[-1]
+        self.held = [False, False]
         self.open = [not _is_inside(point, box) for point in (begin, end)]
         first = _entry(points[1], begin, box) if self.open[0] else begin
         last = _entry(points[-2], end, box) if self.open[1] else end
@@ -284,6 +288,11 @@ class _Line:
             if number < len(self.lengths) - 1 or self.open[1]:
                 high = np.minimum(high, length)
             chosen = np.flatnonzero((high > low) & (side[disks] != 0))
+            near = 2.0 * float(radii.max())  # up to another joint there are no gaps
+            if len(chosen) and number == 0 and self.held[0] and low[chosen].min() < near:
+                low[chosen[low[chosen].argmin()]] = 0.0
+            if len(chosen) and number == len(self.lengths) - 1 and self.held[1] and high[chosen].max() > length - near:
+                high[chosen[high[chosen].argmax()]] = length
             chosen = chosen[np.argsort(low[chosen], kind="stable")]
             ends = start + np.stack([low, high], axis=1)[chosen, :, None] * along
             found.append((disks[chosen], ends, np.repeat(along[None], len(chosen), axis=0)))
