@@ -42,11 +42,11 @@ def mark_joints(panel: Axes, disks: Disks, segments: Segments | None) -> None:
         for colour, width in (("white", 2.2), (JOINT, THIN)):
             panel.add_collection(LineCollection(list(disks.joints), colors=colour, linewidths=width, **looks), False)
         return
-    share = np.abs(segments.slip) / (disks.most_slip or 1.0)
+    parts, share = list(segments.ends), np.abs(segments.slip) / (disks.most_slip or 1.0)
     widths, colours = THIN + (WIDE - THIN) * share, np.where(segments.is_open, "white", JOINT)
     for colour, more in (("white", 1.0), ("black", 0.6)):
-        panel.add_collection(LineCollection(segments.ends, colors=colour, linewidths=widths + more, **looks), False)
-    panel.add_collection(LineCollection(segments.ends, colors=colours.tolist(), linewidths=widths, **looks), False)
+        panel.add_collection(LineCollection(parts, colors=colour, linewidths=widths + more, **looks), False)
+    panel.add_collection(LineCollection(parts, colors=colours.tolist(), linewidths=widths, **looks), False)
     kinds = [(JOINT, THIN, "joint")]
     kinds += [(JOINT, WIDE, f"joint that has slid {with_unit(disks.most_slip, 'm')}")] if disks.most_slip else []
     kinds += [("white", THIN, "joint that is open")] if segments.is_open.any() else []

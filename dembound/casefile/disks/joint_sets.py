@@ -332,7 +332,7 @@ def _runs(near: np.ndarray, at_low: int | None, at_high: int | None) -> Iterator
         if number is not None:
             row = blocked[number, ::way]
             row[: np.argmin(row) if not row.all() else count] = False
-    away = ~blocked.any(axis=0)
+    away = np.asarray(~blocked.any(axis=0))
     for run in np.split(np.arange(count), np.flatnonzero(np.diff(away.astype(int))) + 1):
         if count == 0 or not away[run[0]]:
             continue
