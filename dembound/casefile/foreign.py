@@ -201,11 +201,10 @@ NAMES: dict[tuple[str, ...], Advice] = {
     ("reservoir", "reservoir_level", "upstream_level", "tailwater"): (("", _EMPTY),),
     ("thermal", "temperature"): (("", "there is none: the body has no temperature"),),
     ("dfn", "joint", "joints", "fracture", "fractures", "smooth_joint", "crack", "cracks"): (
-        (
-            "material",
-            f'there is none: with law = "linearpbond" bonds break at pb_ten or pb_coh, and runs record it{_MORE}',
-        ),
+        ("packing", "write [[joint]] with points, or with dip and spacing for a set; bonds break by law"),
     ),
+    ("sj_da", "jdilation", "dilation_angle"): (("dilation", "write dilation, degrees"),),
+    ("zdilation",): (("dilation_end", "write dilation_end, the slip at which dilation ends"),),
     ("layers", "soil", "strata", "stratum", "zones"): (("packing", "write [[layer]] for each, from the surface down"),),
     ("dt", "delta_t", "time_increment", "deltat"): _STEP,
     ("courant", "cfl", "timestep_factor", "safety_factor"): (("safety", "write safety, share of the stability limit"),),

@@ -72,13 +72,13 @@ def layer_attributes(case: DiskCase) -> dict[str, Any]:
 
     Of either side also the numbers of its layers, from 1.
     """
-    if not case.joints:
+    if not case.layer_planes:
         return {}
     names = {"layer_names": [*case.layer_names]}
     if not case.is_unlike:
-        return names | {"joints": [*case.joints]}
+        return names | {"joints": [*case.layer_planes]}
     own = {f"{side}_layers": [1 + number for number in case.numbers_beside(side)] for side in case.sides_of_ground}
-    joints = {f"{side}_joints": np.array(case.beside(side).joints) for side in case.sides_of_ground}
+    joints = {f"{side}_joints": np.array(case.beside(side).layer_planes) for side in case.sides_of_ground}
     return names | {"meet": case.ground.meet} | own | joints
 
 
@@ -217,9 +217,10 @@ class DiskBody(Scene):
         return self.assembly.size
 
     @property
-    def walls(self) -> Mapping[str, np.ndarray]:
-        """Points (p, 2) m of the walls that disks touch, by name."""
-        return {wall.name: np.array(wall.line) for wall in self.case.wall}
+    def lines(self) -> dict[str, dict[str, np.ndarray]]:
+        """Points (p, 2) m by name of the "walls" that disks touch, and of "joints"."""
+        walls = {wall.name: np.array(wall.line) for wall in self.case.wall}
+        return {"walls": walls, "joints": {joint.name: np.array(joint.points) for joint in self.case.joint}}
 
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once

@@ -107,7 +107,7 @@ def foot_of(
 
 def ground_beneath(case: DiskCase, ground: PackedMaterial) -> PackedMaterial:
     """The ground below the box of a case: one material, or all layers if some begin below."""
-    deeper = ground.is_layered and case.joints[-1] < case.box[1]
+    deeper = ground.is_layered and case.layer_planes[-1] < case.box[1]
     return ground if deeper else ground.at(case.box[1])
 
 

@@ -332,7 +332,7 @@ def ground_of(case: DiskCase) -> PackedMaterial:
 
 def _in_layers(case: DiskCase, materials: Sequence[PackedMaterial]) -> LayeredGround:
     """The ground of a case that is the same at both sides; materials : of its layers from the surface down."""
-    return layered(materials[::-1], case.joints[::-1], case.packing.origin[1])
+    return layered(materials[::-1], case.layer_planes[::-1], case.packing.origin[1])
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:

@@ -27,7 +27,7 @@ def far_below(scene: DiskScene) -> float:
     Where walls reach further down than the base, their lowest point stands in for it.
     """
     _, low, _, high = scene.case.box
-    return min([low, *(float(line[:, 1].min()) for line in scene.walls.values())]) - (high - low)
+    return min([low, *(float(line[:, 1].min()) for line in scene.lines["walls"].values())]) - (high - low)
 
 
 class FarDisks(Every):

@@ -8,7 +8,8 @@ middle p of the overlap. With n the normal from the second face j to the first, 
     shear w = (u_i − u_j)·t + θ_i h_i + θ_j h_j,    σ = −k_n g,    τ = −k_s (w − slip)
 
 Where it fails, the pair has σ ≥ 0 and |τ| ≤ μσ. A pair that begins to overlap has L = 0 and no shear, so that forces
-have no steps.
+have no steps. With dilation ψ the faces of slip s since the start ride up on each other by h = tan ψ min(|s|, its end),
+and back as they slide back, σ = −k_n (g − h): Itasca's `dilation` and `zdilation`. Friction then takes τ − σ tan ψ.
 
 Elastic bodies that slide on each other drive waves, as friction follows the pressure (Adams 1995). It therefore follows
 with a delay (Prakash & Clifton 1993, Ranjith & Rice 2001), in which P waves run one diameter. And a normal dashpot acts
@@ -21,11 +22,9 @@ from numba import njit
 
 from dembound.kernels.common import FAST, U
 from dembound.kernels.compiler.separate import apart
+from dembound.kernels.joint_notes import NEEDED, PAIRS, STEPS, note_event, note_means
 from dembound.kernels.law import is_tie
 from dembound.kernels.tables.joints import JointFaces
-
-PAIRS, STEPS, EVENTS, NEEDED = range(4)
-"""Places in `JointFaces.counts`."""
 
 FRICTION, CRACK, CLOSING = range(3)
 """Places in `JointFaces.lost`."""
@@ -50,21 +49,31 @@ def _height_at(place, x0, y0, x1, y1):
 
 
 @njit(**FAST)
+def _rise(joint, k):
+    """By how much (m) the faces of pair k have ridden up on each other, as they have slid."""
+    law, pairs = joint.law, joint.pairs
+    slid = abs(pairs.slip[k] - 0.5 * (joint.rest[pairs.first[k]] + joint.rest[pairs.second[k]]))
+    return law.dilation * min(slid, law.dilation_end)
+
+
+@njit(**FAST)
 def _stress(joint, k, gap, moved, length, place):
-    """Pressure and shear stress of pair k, slip of this step, whether it slides, and energy of strength it has lost.
+    """Pressure and shear stress of pair k, slip and rise of this step, whether it slides, and energy of lost strength.
 
     gap : m, beyond what the faces are pressed in; moved : m, shear displacement; place : x, y (m) of the overlap.
     """
     law, pairs = joint.law, joint.pairs
     kn, ks = pairs.kn[k], pairs.ks[k]
+    if law.dilation > 0.0:
+        gap -= _rise(joint, k)
     push, rub = -kn * gap, -ks * (moved - pairs.slip[k])
-    slipped, slides, cracked = 0.0, False, 0.0
+    slipped, risen, slides, cracked = 0.0, 0.0, False, 0.0
     if law.fails and pairs.intact[k]:
         torn = push < -law.tension
         if torn or abs(rub) > law.cohesion + law.friction * max(push, 0.0):
             pairs.intact[k] = False
             cracked = 0.5 * length * (push * push / kn + rub * rub / ks)
-            _note_event(joint, k, torn, place[0], place[1])
+            note_event(joint, k, torn, place[0], place[1])
     if law.fails and not pairs.intact[k]:
         push = max(push, 0.0)
         bearing = pairs.bearing[k] + law.follows * (push + pairs.drag[k] - pairs.bearing[k])
@@ -75,8 +84,13 @@ def _stress(joint, k, gap, moved, length, place):
             rub = np.copysign(most, rub)
             slip = moved + rub / ks
             slipped = slip - pairs.slip[k]
+            if law.dilation > 0.0:
+                before = _rise(joint, k)
+                pairs.slip[k] = slip
+                risen = _rise(joint, k) - before
+                push = max(kn * (risen - gap), 0.0)
             pairs.slip[k] = slip
-    return push, rub, slipped, slides, cracked
+    return push, rub, slipped, risen, slides, cracked
 
 
 @njit(**FAST)
@@ -122,12 +136,13 @@ def _push_pair(joint, k, u, v):
     before = pairs.length[k]
     if before <= 0.0:
         pairs.slip[k] = moved
-    push, rub, slipped, slides, cracked = 0.0, 0.0, 0.0, False, 0.0
+    push, rub, slipped, risen, slides, cracked = 0.0, 0.0, 0.0, 0.0, False, 0.0
     if length > 0.0:
         gap = _height_at(middle, 0.0, 0.0, b, height_b) - _height_at(middle, c, height_c, d, height_d)
+        pairs.opening[k] = gap
         gap -= joint.closure[f] + joint.closure[g]
         place = ax + tx * middle, ay + ty * middle
-        push, rub, slipped, slides, cracked = _stress(joint, k, gap, moved, length, place)
+        push, rub, slipped, risen, slides, cracked = _stress(joint, k, gap, moved, length, place)
     energy = 0.5 * length * (push * push / pairs.kn[k] + rub * rub / pairs.ks[k])
     # what the forces have taken from the disks since the step before, and is not stored
     half = 0.5 * joint.law.step
@@ -138,6 +153,8 @@ def _push_pair(joint, k, u, v):
     rubbed = 0.0
     if slides and cracked == 0.0:
         rubbed = -0.5 * (was_rub + length * rub) * slipped
+        if joint.law.dilation > 0.0:
+            rubbed -= 0.5 * (was_push + length * push) * risen
     lost[U(FRICTION)] += rubbed
     lost[U(CRACK)] += broken
     lost[U(CLOSING)] += taken - rubbed - broken
@@ -155,20 +172,6 @@ def _push_pair(joint, k, u, v):
 
 
 @njit(**FAST)
-def _note_event(joint, k, torn, x, y):
-    """Note at (x, y) m that pair k has lost its strength."""
-    number = joint.counts[EVENTS]
-    if number < joint.events.shape[0]:
-        joint.events[number, 0] = joint.counts[STEPS]
-        joint.events[number, 1] = joint.pairs.first[k]
-        joint.events[number, 2] = joint.pairs.second[k]
-        joint.events[number, 3] = x
-        joint.events[number, 4] = y
-        joint.events[number, 5] = 0.0 if torn else 1.0
-    joint.counts[EVENTS] = number + 1
-
-
-@njit(**FAST)
 def _copy(one, k, other, q):
     """Copy pair k of one list to place q of another."""
     other.first[q], other.second[q] = one.first[k], one.second[k]
@@ -177,7 +180,7 @@ def _copy(one, k, other, q):
     other.slip[q], other.length[q] = one.slip[k], one.length[k]
     other.pressure[q], other.shear[q], other.drag[q] = one.pressure[k], one.shear[k], one.drag[k]
     other.arm[q, 0], other.arm[q, 1] = one.arm[k, 0], one.arm[k, 1]
-    other.energy[q], other.bearing[q] = one.energy[k], one.bearing[k]
+    other.energy[q], other.bearing[q], other.opening[q] = one.energy[k], one.bearing[k], one.opening[k]
 
 
 @njit(**FAST)
@@ -196,7 +199,7 @@ def _begin_pair(joint, q, f, g):
     pairs.slip[q], pairs.length[q] = 0.0, 0.0
     pairs.pressure[q], pairs.shear[q], pairs.drag[q] = 0.0, 0.0, 0.0
     pairs.arm[q, 0], pairs.arm[q, 1] = 0.0, 0.0
-    pairs.energy[q], pairs.bearing[q] = 0.0, 0.0
+    pairs.energy[q], pairs.bearing[q], pairs.opening[q] = 0.0, 0.0, 0.0
 
 
 @apart()
@@ -216,7 +219,7 @@ def list_faces(joint, u):
             dx, dy = _end(joint, u, g, 1)
             away_x, away_y = 0.5 * (cx + dx - ax - bx), 0.5 * (cy + dy - ay - by)
             other = 0.5 * (abs(tx * (dx - cx) + ty * (dy - cy)))
-            near = abs(tx * away_x + ty * away_y) < half + other + law.margin
+            near = abs(tx * away_x + ty * away_y) < half + other + law.margin and joint.part[f] == joint.part[g]
             while at < count and (pairs.first[at] < f or (pairs.first[at] == f and pairs.second[at] < g)):
                 at += 1
             known = at < count and pairs.first[at] == f and pairs.second[at] == g
@@ -268,6 +271,7 @@ def push_faces(joint, u, v):
         joint.now[f, 2], joint.now[f, 3] = _end(joint, u, f, 1)
     for k in range(joint.counts[PAIRS]):
         _push_pair(joint, U(k), u, v)
+    note_means(joint)
     joint.counts[STEPS] += 1
 
 

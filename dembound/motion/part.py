@@ -224,6 +224,14 @@ class System:
         """
         return np.zeros((len(steps), 0, 4))
 
+    def joint_samples(self, steps: np.ndarray) -> np.ndarray:
+        """Means over each joint (k, j, 6) in some of the last steps (k,), see `new_record`; by default none."""
+        return np.zeros((len(steps), 0, 6))
+
+    def joint_segments(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Columns of the segments of all joints in the last step, by name: values (s, …) and unit; by default none."""
+        return {}
+
     @property
     def balancing_force(self) -> np.ndarray | None:
         """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""

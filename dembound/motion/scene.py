@@ -308,8 +308,8 @@ class Scene(ABC):
         return dict(self.edges)
 
     @property
-    def walls(self) -> Mapping[str, np.ndarray]:
-        """Points (p, 2) m of rigid walls that it touches, by name; by default none."""
+    def lines(self) -> Mapping[str, Mapping[str, np.ndarray]]:
+        """Points (p, 2) m by name of rigid "walls" that it touches, and of "joints" in it; by default none."""
         return {}
 
     @property

@@ -10,12 +10,13 @@ import numpy as np
 
 from dembound.holes import Hole
 from dembound.plot.disks import ContinuumCells, Window, read_continuum, read_holes
-from dembound.plot.lines_of_ground import LayersOfSide, areas_in, faults_in, foot_in, layers_in
+from dembound.plot.lines_of_ground import LayersOfSide, Segments, areas_in, foot_in, layers_in, segments_in
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import (
     laws_in_words,
     laws_of,
     require_run,
+    snapshots_of,
     text_of,
     walls_at,
 )
@@ -43,8 +44,9 @@ class Disks:
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
     the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
     those that still have their disks; layers: those of the ground, or of its left and right side, none of uniform
-    ground; foot, the height (m) below which motion of the continuum is without the free field; walls and faults:
-    points (k, 2) m of each wall and joint; areas, corners (k, 2) m of groups, and of later holes, by name.
+    ground; foot, the height (m) below which motion of the continuum is without the free field; walls and joints:
+    points (k, 2) m of each; most_slip, m, the largest of joints in any snapshot; areas, corners (k, 2) m of groups, and
+    of later holes, by name.
     """
 
     positions: np.ndarray
@@ -59,7 +61,8 @@ class Disks:
     layers: tuple[LayersOfSide, ...] = ()
     foot: float | None = None
     walls: tuple[np.ndarray, ...] = ()
-    faults: tuple[np.ndarray, ...] = ()
+    joints: tuple[np.ndarray, ...] = ()
+    most_slip: float = 0.0
     areas: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @cached_property
@@ -126,7 +129,8 @@ class Field:
     either sign; the name and unit of the field; the meaning of its sign, if the name does not give it; beyond (k, m),
     values of the nodes of a continuum, None if it has none; moved (k, n, 2) and moved_beyond (k, m, 2) m,
     displacements with which disks and nodes are drawn, None for none; walls (p, 2) m as they are drawn, None where
-    they are at the start; cut, whether values exceed the limits; gone (k, n) bool, disks that have vanished.
+    they are at the start; cut, whether values exceed the limits; gone (k, n) bool, disks that have vanished; joints,
+    segments each time, None where the field has no time.
     """
 
     captions: list[str]
@@ -142,6 +146,7 @@ class Field:
     walls: tuple[np.ndarray, ...] | None = None
     cut: bool = False
     gone: np.ndarray | None = None
+    joints: tuple[Segments | None, ...] = ()
 
     @property
     def extend(self) -> Literal["neither", "max", "both"]:
@@ -165,6 +170,7 @@ def read_disks(file: h5py.File) -> Disks:
         if name.endswith(FREE_FIELD) and not np.array_equal(place, places[name.removesuffix(FREE_FIELD)])
     ]
     positions = file["particles/position"][:]
+    slipped = [segments_in(snapshot) for snapshot in snapshots_of(file)]
     span = float(np.ptp(positions, axis=0).max())
     return Disks(
         positions=positions,
@@ -179,6 +185,7 @@ def read_disks(file: h5py.File) -> Disks:
         layers=tuple(layers_in(file)),
         foot=foot_in(file),
         walls=tuple(walls_at(file, 0.0).values()),
-        faults=faults_in(file),
+        joints=tuple(group["points"][:] for group in file.get("joints", {}).values()),
+        most_slip=max((float(np.abs(each.slip).max(initial=0.0)) for each in slipped if each is not None), default=0.0),
         areas=areas_in(file),
     )

@@ -10,7 +10,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.plot.disks import GROUP, is_scattered
 from dembound.plot.field import FORCES, OF_THE_RUN, Field, FieldName
-from dembound.plot.lines_of_ground import gone_at
+from dembound.plot.lines_of_ground import gone_at, segments_in
 from dembound.plot.places import crack_lines, displacement_of, exaggeration
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import COMPONENTS, cracks_until, snapshot_of, snapshots_of, walls_at
@@ -77,6 +77,7 @@ class FieldInRecord:
             walls=tuple(walls_at(file, last, self.factor).values()) or None if is_moved else None,
             cut=self.cut,
             gone=None if ends is None else np.array(times)[:, None] > ends,
+            joints=tuple(segments_in(group, self.factor) for group in chosen),
         )
 
 

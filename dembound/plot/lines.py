@@ -7,13 +7,19 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patheffects import Normal, Stroke
 
 from dembound.plot.disks import Window
 from dembound.plot.field import Disks
-from dembound.plot.lines_of_ground import LayersOfSide
+from dembound.plot.lines_of_ground import LayersOfSide, Segments
+from dembound.words import with_unit
 
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
 """Drawing order of marks."""
+
+JOINT, THIN, WIDE = "black", 1.0, 4.5
+"""Colour of joints, and widths (points) without slip and with the largest of the run."""
 
 NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2
 """Size of a monitor's name in points, with its background."""
@@ -26,12 +32,27 @@ def mark_walls(panel: Axes, walls: Sequence[np.ndarray]) -> None:
         panel.plot(*line.T, label=None if number else "wall", scaley=False, **looks)
 
 
-def mark_faults(panel: Axes, disks: Disks) -> None:
-    """Lines along joints, visible on all colours."""
-    for points in disks.faults:
-        looks: dict[str, Any] = {"zorder": ABOVE_DISKS, "solid_capstyle": "round"}
-        panel.plot(*points.T, color="white", linewidth=2.2, scalex=False, scaley=False, **looks)
-        panel.plot(*points.T, color="black", linewidth=1.2, scalex=False, scaley=False, **looks)
+def mark_joints(panel: Axes, disks: Disks, segments: Segments | None) -> None:
+    """Lines along joints, visible on all colours: the wider, the more they have slid, and white where they are open.
+
+    segments : at a time; None: the whole lines, for a field without a time.
+    """
+    looks: dict[str, Any] = {"zorder": ABOVE_DISKS, "capstyle": "butt"}
+    if segments is None:
+        for colour, width in (("white", 2.2), (JOINT, THIN)):
+            panel.add_collection(LineCollection(list(disks.joints), colors=colour, linewidths=width, **looks), False)
+        return
+    parts, share = list(segments.ends), np.abs(segments.slip) / (disks.most_slip or 1.0)
+    widths, colours = THIN + (WIDE - THIN) * share, np.where(segments.is_open, "white", JOINT)
+    for colour, more in (("white", 1.0), ("black", 0.6)):
+        panel.add_collection(LineCollection(parts, colors=colour, linewidths=widths + more, **looks), False)
+    panel.add_collection(LineCollection(parts, colors=colours.tolist(), linewidths=widths, **looks), False)
+    kinds = [(JOINT, THIN, "joint")]
+    kinds += [(JOINT, WIDE, f"joint that has slid {with_unit(disks.most_slip, 'm')}")] if disks.most_slip else []
+    kinds += [("white", THIN, "joint that is open")] if segments.is_open.any() else []
+    for colour, width, label in kinds:
+        edge = [Stroke(linewidth=width + 1.0, foreground="black"), Normal()]
+        panel.plot([], [], color=colour, linewidth=width, label=label, path_effects=edge, scalex=False, scaley=False)
 
 
 def mark_areas(panel: Axes, disks: Disks) -> None:

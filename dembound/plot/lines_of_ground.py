@@ -15,6 +15,9 @@ from dembound.results.reader import text_of
 POINTS = 257
 """Points at which the outline of a hole is drawn: every corner of up to eight even sides."""
 
+OPEN = 3
+"""State of a segment of a joint whose faces are apart, see `JointTie.segments`."""
+
 
 class LayersOfSide(NamedTuple):
     """Layers from the surface down: their names, the heights of their joints, and from which x to which they are, m."""
@@ -38,13 +41,21 @@ def layers_in(file: h5py.File) -> Iterator[LayersOfSide]:
         yield LayersOfSide(own, tuple(map(float, file.attrs[f"{side}_joints"])), low, high)
 
 
-def faults_in(file: h5py.File) -> tuple[np.ndarray, ...]:
-    """Points (k, 2) m on the line of each joint in the case of an open record; none without its text."""
-    try:
-        joints = parsed(text_of(file.attrs.get("case", ""))).get("joint", [])
-        return tuple(np.array(joint["points"], dtype=float).reshape(-1, 2) for joint in joints)
-    except (CaseError, KeyError, TypeError, ValueError):
-        return ()
+class Segments(NamedTuple):
+    """Parts of joints that lie opposite each other: ends (s, 2, 2) m, slip (s,) m, and whether they are open (s,)."""
+
+    ends: np.ndarray
+    slip: np.ndarray
+    is_open: np.ndarray
+
+
+def segments_in(snapshot: h5py.Group, exaggerate: float = 0.0) -> Segments | None:
+    """The segments of joints in a snapshot of an open record, moved by exaggerated displacements; None without any."""
+    if "joints" not in snapshot:
+        return None
+    joints = {name: dataset[:] for name, dataset in snapshot["joints"].items()}
+    moved = exaggerate * snapshot["displacement"][:][joints["particles"][:, 0], None, :2]
+    return Segments(joints["ends"].reshape(-1, 2, 2) + moved, joints["slip"], joints["state"] == OPEN)
 
 
 def areas_in(file: h5py.File) -> dict[str, np.ndarray]:

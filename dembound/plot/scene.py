@@ -24,7 +24,7 @@ from dembound.plot.lines import (
     LETTER_WIDTH,
     NAME_HEIGHT,
     mark_areas,
-    mark_faults,
+    mark_joints,
     mark_layers,
     mark_walls,
 )
@@ -231,8 +231,7 @@ def draw_panel(
             panel.axvline(seam, color="black", linewidth=1.0, label=label)
     mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
-    if shown.moved is None:
-        mark_faults(panel, disks)
+    mark_joints(panel, disks, shown.joints[index] if shown.joints else None)
     mark_areas(panel, disks)
     _mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):

@@ -63,7 +63,7 @@ LOCK = "run.lock"
 OWN = re.compile(
     r"(run\.(h5|h5\.log|lock)|checkpoint\.npz|settled/[a-z._]+\.npz|summary\.json|estimate\.h5"
     r"|(scene|histories|histories_stress)\.png"
-    r"|paraview/((particles|contacts|walls|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py))"
+    r"|paraview/((particles|contacts|walls|joints|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py))"
     r"((\.\w{8})?\.(part|new)(/[^/]+)?)?"
 )
 """The files that a run writes, by their paths in its folder; all other files are kept."""

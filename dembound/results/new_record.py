@@ -31,12 +31,17 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
     walls/<wall>/           points (p, 2) at the start; time (k,), displacement (k, 2), force (k, 2) of the disks on
                             it, at the times of histories
+    joints/<joint>/         points (p, 2) at the start, to the left of which a pair's first disk is; at the times of
+                            histories time and means over its length, (k,) each, 0 where it has none: slip and opening
+                            since the start, slip and shear of the left side along the line, pressure, shear, and shares
+                            that are closed and that slide
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the mean of those half a step before and after, if the
                             run got so far (attribute velocity_of_half_step otherwise); coordination (n,) of a
                             history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
-                            columns of `disks.contact_forces.contact_columns`; with a continuum, continuum/ with
+                            columns of `disks.contact_forces.contact_columns`; with joints,
+                            joints/ with those of `JointTie.segments`; with a continuum, continuum/ with
                             displacement, velocity and stress (m, 3) of its nodes; beside a free-field column the stress
                             and scattered_displacement and scattered_velocity are those of the scattered motion, the
                             others those of the total one
@@ -68,6 +73,7 @@ from dembound.motion.scene import Scene
 from dembound.motion.trackers import Run
 from dembound.results.datasets import describe, make, write
 from dembound.results.folder import source_of
+from dembound.results.line_histories import make_lines
 from dembound.results.reader import finite, snapshots_of
 from dembound.version import __version__
 
@@ -100,11 +106,6 @@ HISTORY = (
 SIDE_HISTORY = (
     ("time", (), "f8", "s"),
     ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
-    ("force", (2,), "f8", "N/m"),
-)
-WALL_HISTORY = (
-    ("time", (), "f8", "s"),
-    ("displacement", (2,), "f8", "m"),
     ("force", (2,), "f8", "N/m"),
 )
 LAWS = (("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s"))
@@ -210,9 +211,7 @@ def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Seq
     write_inputs(file, scene.case.files)
     _make_histories(file, scene)
     _write_boundaries(file, scene, sides)
-    for name, points in scene.walls.items():
-        write(file.create_group(f"walls/{name}"), "points", points, "m")
-        make(file[f"walls/{name}"], WALL_HISTORY)
+    make_lines(file, scene)
     make(file.create_group("cracks"), CRACKS)
     if entered is not None:
         _make_energy(file, scene, entered)

@@ -20,13 +20,13 @@ from dembound.motion.part import Cracks, joined
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
+from dembound.results.line_histories import LineHistories
 from dembound.results.new_record import (
     DERIVED,
     DISPLACEMENT_UNIT,
     SIDE_HISTORY,
     UNBALANCED,
     VELOCITY_UNIT,
-    WALL_HISTORY,
     begin_record,
     header_of,
     write_stages,
@@ -83,7 +83,7 @@ class Recorder:
         self._samples: list[np.ndarray] = []
         self._side_samples: list[np.ndarray] = []
         self._side_times: list[np.ndarray] = []
-        self._wall_samples: list[np.ndarray] = []
+        self._lines = LineHistories(self.scene)
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a", libver=FORMAT)
@@ -133,7 +133,7 @@ class Recorder:
         return {
             "histories": max((len(each["time"]) for each in self._histories), default=0),
             "sides": max((len(each["time"]) for each in self._side_histories), default=0),
-            "walls": max((len(each["time"]) for each in self._wall_histories), default=0),
+            **self._lines.counts,
             "cracks": len(self._cracks["time"]),
             "energy": 0 if self.ledger is None else self.ledger.regular_entries,
             "laws": len(self._laws["time"]),
@@ -144,7 +144,7 @@ class Recorder:
         """The datasets that grow, kept because searching a dataset takes as long as extending it."""
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
         self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
-        self._wall_histories = [dict(self.file["walls"][name]) for name in self.scene.walls]
+        self._lines.find(self.file)
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
         self._energy = datasets_of(self.file["energy"]) if self.ledger is not None else {}
 
@@ -159,10 +159,9 @@ class Recorder:
             sides = self.run.side_samples
             self._side_times.append(sides.steps * step)
             self._side_samples.append(sides.record)
-        if self.scene.walls:
-            self._wall_samples.append(self.run.system.wall_samples(begun + rows))
+        self._lines.take(self.run.system, begun + rows)
         self._broken.append(self.run.system.take_cracks(state.step))
-        kept = sum(samples.nbytes for samples in self._samples + self._side_samples + self._wall_samples)
+        kept = sum(samples.nbytes for samples in self._samples + self._side_samples + self._lines.kept)
         if time.monotonic() - self._written >= KEPT_SECONDS:
             self.flush()
         elif kept >= KEPT_BYTES:
@@ -213,6 +212,8 @@ class Recorder:
             write(group, name, widened(name, values), unit)
         for name, (values, unit) in self.run.system.contact_forces(state.displacement).items():
             write(group.require_group("contacts"), name, values, unit)
+        for name, (values, unit) in self.run.system.joint_segments().items():
+            write(group.require_group("joints"), name, values, unit)
 
     def _moved(self, name: str, values: np.ndarray, time: float) -> Iterator[tuple[str, np.ndarray]]:
         """Arrays of a snapshot, by their paths in it, for the motion (3, n) of the nodes at a time (s).
@@ -255,8 +256,8 @@ class Recorder:
                 _cut(history, counts["histories"])
         for name in self._sides:
             _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["sides"])
-        for name in self.scene.walls:
-            _cut({column: self.file["walls"][name][column] for column, *_ in WALL_HISTORY}, counts["walls"])
+        for kind, histories in self._lines.datasets(self.file):
+            _cut(histories, counts[kind])
         for name in ("cracks", "energy", "laws"):
             _cut(datasets_of(self.file[name]), counts[name])
         for side in self.file.get("energy/sides", {}).values():
@@ -281,11 +282,7 @@ class Recorder:
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
             self._times, self._samples = [], []
-            for index, history in enumerate(self._wall_histories):
-                walls = np.concatenate([each[:, index] for each in self._wall_samples])
-                for (name, *_), values in zip(WALL_HISTORY, (times, walls[:, :2], walls[:, 2:]), strict=True):
-                    extend(history[name], values)
-            self._wall_samples = []
+            self._lines.append(times)
             for index, history in enumerate(self._histories):
                 extend(history["time"], times)
                 extend(history["displacement"], samples[:, index, :3])

@@ -104,6 +104,7 @@ _PARTS = (
     "particles",
     "boundaries",
     "walls",
+    "joints",
     "cracks",
     "energy",
     "side_energies",
@@ -153,6 +154,8 @@ class Results:
     boundaries : of every side its particles and their peak velocities, and of the side as a whole ``time`` (k,), mean
     ``displacement`` (k, 3) and ``force`` (k, 2).
     walls : of every wall its ``points`` (p, 2) at the start, and ``time`` (k,), ``displacement`` and ``force`` (k, 2).
+    joints : of every joint its ``points`` (p, 2) at the start, and ``time``, ``slip``, ``opening``, ``pressure``,
+    ``shear``, ``closed`` and ``sliding`` (k,).
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
@@ -170,6 +173,7 @@ class Results:
             self.histories = self._arrays(file, "histories", "monitor")
             self.boundaries = self._arrays(file, "boundaries", "side")
             self.walls = self._arrays(file, "walls", "wall")
+            self.joints = self._arrays(file, "joints", "joint")
             self.snapshots: Sequence[Arrays] = _Snapshots(self._record, snapshots_of(file).names)
             self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)

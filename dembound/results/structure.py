@@ -82,7 +82,16 @@ COLUMNS: Mapping[str, Shapes] = {
         "force": (2,),
     },
     "walls/[^/]+": {"points": (2,), "time": (), "displacement": (2,), "force": (2,)},
+    "joints/[^/]+": {
+        "points": (2,),
+        **dict.fromkeys(("time", "slip", "opening", "pressure", "shear", "closed", "sliding"), ()),
+    },
     "snapshots/[^/]+": {"displacement": (3,), "velocity": (3,), "coordination": (), "unbalanced": (2,), "damage": ()},
+    "snapshots/[^/]+/joints": {
+        "ends": (4,),
+        "particles": (2,),
+        **dict.fromkeys(("joint", "slip", "opening", "pressure", "shear", "state"), ()),
+    },
     "cracks": {"time": (), "position": (2,), "particles": (2,), "shear": ()},
     "laws": {"time": ()},
     "static(/before)?": {"displacement": (3,)},

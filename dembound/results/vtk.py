@@ -151,7 +151,8 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
     folder
         created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one, and
         ``particles.pvd``, or ``particles.vtkhdf``; ``view.py`` and, where bonds broke, ``cracks.vtu``; the same files
-        for ``contacts`` and ``walls`` if the record has them; for a bar ``bar_0000.vtu`` … in place of ``particles``.
+        for ``contacts``, ``walls`` and ``joints`` if the record has them; for a bar ``bar_0000.vtu`` … in place of
+        ``particles``.
     kind
         the kind of body that the run is of.
     files

@@ -16,7 +16,7 @@ from dembound.casefile.bar.model import BarLoad, BarMonitor, BarRun
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.group import Group
 from dembound.casefile.disks.incident import Damping, IncidentWave, Motion
-from dembound.casefile.disks.joint import Joint
+from dembound.casefile.disks.joint_sets import JointTable
 from dembound.casefile.disks.layer import Layer, OutsideTable
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
@@ -114,7 +114,7 @@ DISKS = (
     Part("`[[load]]`", (Load,), guide="tasks/blasts"),
     Part("`[[hole]]`", holes.TYPES, holes.Hole, guide="tasks/holes_and_stress"),
     Part("`[[wall]]`", (Wall,), guide="tasks/walls"),
-    Part("`[[joint]]`", (Joint,), guide="tasks/joints"),
+    Part("`[[joint]]`", (JointTable,), guide="tasks/joints"),
     Part("`[[monitor]]`", (MonitorTable,), guide="tasks/show_results"),
     RUN,
     Part("`[output]`", (Output,), guide="tasks/show_results"),

@@ -45,6 +45,9 @@ def test_an_inclined_joint_bears_the_stress_at_rest(lab):
         run.run(1200)
     assert np.array_equal(simulation.state.u, other.state.u)
     assert np.array_equal(simulation.state.work, other.state.work)
+    steps = np.array([simulation.state.step - 1])
+    assert np.array_equal(simulation.system.joint_samples(steps), other.system.joint_samples(steps))
+    assert np.array_equal(tie.first, other.system.joints[0].first)
 
 
 SLOPE = {

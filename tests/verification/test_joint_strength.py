@@ -83,6 +83,26 @@ def test_faces_that_come_to_lie_opposite_each_other_begin_without_shear(lab):
     )
 
 
+def test_dilation_under_fixed_volume(lab):
+    """Pressure grows by k_n tan ψ per slip up to the end of dilation, and falls again as the joint slides back."""
+    end, pressure, tangent = 0.02, 4e5, np.tan(np.radians(10.0))
+    move, tie = halves(lab, {"fric": FRICTION, "dilation": 10.0, "dilation_end": end})
+    kn, ks = tie.faces.stiffness
+    shifts = np.linspace(0.0, 0.1, 401)
+    push, rub = np.array([move(-pressure / kn, shift) for shift in shifts]).T
+    # of stresses means over the overlap; slip is the shift less its elastic part
+    slip = shifts + rub / ks
+    np.testing.assert_allclose(push, pressure + kn * tangent * np.minimum(slip, end), rtol=1e-9)
+    # friction is that of the pressure before the rise of this step, of at most 0.25 mm
+    sliding = slip > 1e-6
+    np.testing.assert_allclose(-rub[sliding], FRICTION * push[sliding], atol=FRICTION * kn * tangent * 2.6e-4)
+    for shift in shifts[::-1]:
+        back = move(-pressure / kn, shift)
+    slip = tie.slip(tie.acting).mean()
+    assert abs(slip) < 1e-3
+    np.testing.assert_allclose(back[0], pressure + kn * tangent * abs(slip), rtol=1e-9)
+
+
 def test_sliding_back_and_forth_loses_twice_friction_times_the_way(pulled):
     move, tie = pulled
     closed, way = -4e5 / tie.faces.stiffness[0, 0], 0.3

@@ -60,7 +60,7 @@ def largest_diameter(case: DiskCase, shortest: float) -> float:
     """
     holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.holes]
     across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
-    layers = [(high - low) / LAYER for high, low in pairwise([case.box[3], *case.joints])]
+    layers = [(high - low) / LAYER for high, low in pairwise([case.box[3], *case.layer_planes])]
     heights = sorted({case.packing.box[1], case.packing.box[3], *(floor.height for floor in case.floors.values())})
     element = SPARE * sizing.least_size(case.outside.order, 1.0, is_random=False)
     steps = [(high - low) / element for low, high in pairwise(heights)] if case.outside_sides and case.floors else []
@@ -180,7 +180,7 @@ def _run(case: DiskCase) -> Any:
 
 def _layers(case: DiskCase, ground: PackedMaterial, sides: _Sides) -> tuple[Layer, ...]:
     """The layers, where sides have moved them, whose lattices have their wave speeds along y."""
-    layers = case.layers_meeting([joint + sides.moved(np.array([0.0, joint]))[1] for joint in case.joints])
+    layers = case.layers_meeting([joint + sides.moved(np.array([0.0, joint]))[1] for joint in case.layer_planes])
     if is_square_lattice(ground):
         return layers
     return tuple(

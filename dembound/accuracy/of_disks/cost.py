@@ -177,7 +177,7 @@ class Steps:
                 static=None,
                 incident=None,
             )
-            heights = [top - self.case.packing.radius for top in (self.case.box[3], *self.case.joints)]
+            heights = [top - self.case.packing.radius for top in (self.case.box[3], *self.case.layer_planes)]
             layers = [self.case.uniform_at(height).layer for height in heights]
             try:
                 self.limits[key] = min(step_limit(build(replace(piece, layer=layer))) for layer in layers)

@@ -83,7 +83,7 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
     return replace(
         case,
         packing=packing,
-        layer=case.layers_meeting(case.joints),
+        layer=case.layers_meeting(case.layer_planes),
         load=tuple(_at_own_disk(load, scene, packing) for load in case.load),
         monitor=tuple(_at_own_disk(monitor, scene, packing) for monitor in case.monitor),
         hole=(*case.holes, *_floors_beyond(case, packing.box)),

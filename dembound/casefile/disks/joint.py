@@ -2,15 +2,16 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from itertools import combinations, pairwise
-from typing import Any
+from itertools import pairwise
+from typing import Any, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import PrivateAttr, field_validator, model_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.messages import numbered
 from dembound.casefile.types import LAWS
+from dembound.holes.polygon import Points
 from dembound.table import FileName, Table, quantity
 
 KINK = 10.0
@@ -25,20 +26,18 @@ CORNERS = ("left", "bottom", "right", "top")
 BRIDGE = 2
 """Disks, at least, between the end of a joint and a side beyond which the ground goes on."""
 
+ALONG = 0.1
+"""Sine of the angle up to which a line goes on along another."""
+
 STRENGTH_KEYS = ("ten", "coh")
 """Keys of a joint's bonds, which need a friction that is left when they break."""
 
 
-class Joint(Table):
-    """A plane of weakness: a line whose two faces are joined by springs along all of it.
+class JointKeys(Table):
+    """The name of a joint, or of a set, and the constants of its faces."""
 
-    Without `fric` the faces neither part nor slide. With it they part where they are pulled by more than `ten`, and
-    slide where the shear stress reaches `coh` + `fric` × the pressure; both strengths are then lost.
-    """
-
-    name: FileName = quantity(..., unit="1", help="name of the joint in messages and results")
-    points: tuple[tuple[float, float], ...] = quantity(
-        ..., unit="m", means="place", help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"
+    name: FileName = quantity(
+        ..., unit="1", help="name of the joint in messages and results; of a set without the numbers"
     )
     kn: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="normal stiffness per area", gt=0.0)
     ks: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="shear stiffness per area", gt=0.0)
@@ -51,21 +50,65 @@ class Joint(Table):
     )
     ten: float = quantity(0.0, unit="Pa", means="strength", help="tensile strength", ge=0.0)
     coh: float = quantity(0.0, unit="Pa", means="strength", help="cohesion", ge=0.0)
+    dilation: float = quantity(
+        0.0,
+        unit="degrees",
+        means="direction",
+        help="angle at which the faces ride up on each other as they slide, below that of fric",
+        ge=0.0,
+        lt=90.0,
+    )
+    dilation_end: float | None = quantity(
+        None, unit="m", means="length", help="slip at which they rise no more; absent: at none", gt=0.0
+    )
     dashpot: float = quantity(
         1.0, unit="1", means="factor", help="normal dashpot of sliding faces, over ρ c_p of the ground", ge=0.0, le=10.0
     )
 
     @model_validator(mode="after")
-    def _is_a_line(self) -> "Joint":
-        steps = np.diff(np.array(self.points).reshape(-1, 2), axis=0)
-        if len(steps) == 0 or not np.hypot(*steps.T).all():
-            raise ValueError("points: must be two or more, none of them twice in turn")
-        turns = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))))
-        if len(turns) and turns.max() > KINK + 1e-9:
-            raise ValueError(f"points: turn by {turns.max():.3g}° at once, must turn by at most {KINK:g}°")
+    def _fails_by_friction(self) -> Self:
         if self.fric is None and (given := [key for key in STRENGTH_KEYS if getattr(self, key) > 0.0]):
             raise ValueError(f"{given[0]}: needs fric, the friction that is left once the joint has failed")
+        if self.dilation > 0.0 and math.tan(math.radians(self.dilation)) >= (self.fric or 0.0):
+            most = math.degrees(math.atan(self.fric or 0.0))
+            raise ValueError(f"dilation: is {self.dilation:g}, must be below the angle of fric, {most:.4g} (degrees)")
+        if self.dilation_end is not None and self.dilation == 0.0:
+            raise ValueError("dilation_end: needs dilation")
         return self
+
+    @property
+    def constants(self) -> tuple[object, ...]:
+        """All but the name."""
+        return tuple(getattr(self, key) for key in JointKeys.model_fields if key != "name")
+
+
+class Joint(JointKeys):
+    """A plane of weakness: a line whose two faces are joined by springs along all of it.
+
+    In a file it may be one of a set, see `joint_sets.JointTable`.
+    """
+
+    points: Points = quantity(
+        ..., unit="m", means="place", help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"
+    )
+
+    _left_out: float = PrivateAttr(0.0)
+    _is_of_set: bool = PrivateAttr(False)
+
+    @field_validator("points")
+    @classmethod
+    def _is_a_line(cls, points: Points) -> Points:
+        return a_line(points)
+
+    @property
+    def left_out(self) -> float:
+        """Length (m) of the set of which it is the first joint that is left out beside earlier joints, else 0."""
+        return self._left_out
+
+    @property
+    def is_of_set(self) -> bool:
+        """Whether it is one of a set, of which there may be parts in the air."""
+        return self._is_of_set
 
     @property
     def is_linear(self) -> bool:
@@ -82,6 +125,17 @@ def joint_ends(boundary: Mapping[str, Boundary | None], intact: Mapping[str, int
     return {side: (1 + max(BRIDGE, intact.get(side, 0))) * diameter for side in artificial}
 
 
+def a_line(points: Points) -> Points:
+    """The points of a joint; raises ValueError for fewer than two, and for kinks above `KINK`."""
+    steps = np.diff(np.array(points).reshape(-1, 2), axis=0)
+    if len(steps) == 0 or not np.hypot(*steps.T).all():
+        raise ValueError("must be two or more, none of them twice in turn")
+    turns = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))))
+    if len(turns) and turns.max() > KINK + 1e-9:
+        raise ValueError(f"turn by {turns.max():.3g}° at once, must turn by at most {KINK:g}°")
+    return points
+
+
 def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the joints with all other tables; a table, or an entry, that is invalid on its own is None."""
     joints = dict(numbered("joint", tables["joint"]))
@@ -94,15 +148,8 @@ def joint_problems(tables: Mapping[str, Any]) -> Iterator[str]:
     if any(hole and hole.stage == "run" for hole in tables["hole"]):
         yield f'{place}: is for ground whose holes are there before the run; let them have stage = "before" or "after"'
     if packing := tables["packing"]:
-        box, diameter = packing.box, 2.0 * packing.radius
         for place, joint in joints.items():
-            yield from _problems_at_sides(place, joint, box, tables["boundary"])
-        for (one, first), (other, second) in combinations(joints.items(), 2):
-            apart = _distance(np.array(first.points), np.array(second.points))
-            if apart < APART * diameter * (1.0 - 1e-9):
-                how = "crosses" if apart == 0.0 else f"comes within {apart:.3g} m of"
-                least = f"must be three diameters of the disks, {APART * diameter:g} m, away from it"
-                yield f"{other}.points: {how} {one}; {least}"
+            yield from _problems_at_sides(place, joint, packing.box, tables["boundary"])
 
 
 def _taken_names(joints: Mapping[str, Joint]) -> Iterator[str]:
@@ -136,9 +183,14 @@ def _problems_at_sides(
     for side, table in sides.items():
         if not (reached.get(side) and table) or not _leaves_by(points, side, box):
             continue
-        if table.is_periodic or table.is_mirror:
+        if goes_on(table):
             said = "beyond which the ground goes on without it; let it end inside"
             yield f'{place}.points: reaches boundary.{side}, "{table.type}", {said}'
+
+
+def goes_on(side: Boundary) -> bool:
+    """Whether joints may not reach a side, as the ground goes on beyond it without them."""
+    return side.is_periodic or side.is_mirror
 
 
 def _leaves_by(points: np.ndarray, side: str, box: tuple[float, float, float, float]) -> bool:
@@ -167,16 +219,34 @@ def _crosses_box(one: np.ndarray, other: np.ndarray, box: tuple[float, float, fl
     return low < high
 
 
+def ends_on(points: np.ndarray, other: np.ndarray, near: float) -> np.ndarray:
+    """Whether the first and the last of points (k, 2) m end on another line (l, 2) m, to 1e-6 of a length near (m).
+
+    Not where both go on along each other, as the parts of a line that a third one has cut.
+    """
+    found = np.zeros(2, dtype=np.bool_)
+    for number, (end, before) in enumerate((points[[0, 1]], points[[-1, -2]])):
+        for segment in (pair for pair in pairwise(other) if distance_to(end[None], np.array(pair))[0] < 1e-6 * near):
+            (ux, uy), (vx, vy) = end - before, segment[1] - segment[0]
+            found[number] |= abs(ux * vy - uy * vx) > ALONG * math.hypot(ux, uy) * math.hypot(vx, vy)
+    return found
+
+
+def distance_to(places: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Distances (k,) m of places (k, 2) m from a line of points (l, 2) m."""
+    least = np.full(len(places), np.inf)
+    for one, other in pairwise(line):
+        step = other - one
+        part = np.clip((places - one) @ step / (step @ step), 0.0, 1.0)
+        least = np.minimum(least, np.hypot(*(places - one - part[:, None] * step).T))
+    return least
+
+
 def _distance(one: np.ndarray, other: np.ndarray) -> float:
     """Least distance (m) of two lines of points (k, 2) m; 0 if they cross."""
-    least = math.inf
-    for a, b in pairwise(one):
-        for c, d in pairwise(other):
-            if _cross(a, b, c, d):
-                return 0.0
-            ends = (_from(p, c, d) for p in (a, b)), (_from(p, a, b) for p in (c, d))
-            least = min(least, *ends[0], *ends[1])
-    return least
+    if any(_cross(a, b, c, d) for a, b in pairwise(one) for c, d in pairwise(other)):
+        return 0.0
+    return float(min(distance_to(one, other).min(), distance_to(other, one).min()))
 
 
 def _cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
@@ -187,10 +257,3 @@ def _cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
 def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
     """Twice the area (m²) of a triangle, positive if its corners go round to the left."""
     return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
-
-
-def _from(point: np.ndarray, one: np.ndarray, other: np.ndarray) -> float:
-    """Distance (m) of a point from the segment between two others."""
-    step = other - one
-    part = np.clip((point - one) @ step / (step @ step), 0.0, 1.0)
-    return float(np.hypot(*(point - one - part * step)))

@@ -128,10 +128,10 @@ class DiskCase(Case):
         return any(material.rolls for material in self.all_materials)
 
     @property
-    def joints(self) -> tuple[float, ...]:
+    def layer_planes(self) -> tuple[float, ...]:
         """Heights y (m) of the planes between layers, from the uppermost down; of unlike sides those of both."""
         if self.is_unlike:
-            return tuple(sorted({*self.beside("left").joints, *self.beside("right").joints}, reverse=True))
+            return tuple(sorted({*self.beside("left").layer_planes, *self.beside("right").layer_planes}, reverse=True))
         return tuple(bottoms(self.layer, self.box[3])[:-1])
 
     @property
@@ -168,7 +168,7 @@ class DiskCase(Case):
                 raise ValueError(f"the layers at y = {height:g} m differ at both sides")
             return one
         near = 1e-9 * max(abs(self.box[1]), abs(self.box[3]))
-        return sum(height + near < joint for joint in self.joints)
+        return sum(height + near < plane for plane in self.layer_planes)
 
     def uniform_at(self, height: float) -> "DiskCase":
         """The case with the layer at a height (m) everywhere; itself without layers."""

@@ -19,7 +19,8 @@ from dembound.casefile.disks.incident import (
     is_damped,
     motion_problems,
 )
-from dembound.casefile.disks.joint import Joint, joint_problems
+from dembound.casefile.disks.joint import joint_problems
+from dembound.casefile.disks.joint_sets import JointTable, without_sets
 from dembound.casefile.disks.layer import Layer, OutsideTable, completed_by_layers, layer_problems
 from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems, rest_problems
 from dembound.casefile.disks.material import BOND_KEYS, ROLLING_KEY, Material
@@ -215,6 +216,13 @@ def _limits(name: str, least: float, largest: float) -> list[str]:
     return [f"{name} >= {least:.10g}"] * below + [f"{name} <= {largest:.10g}"] * above
 
 
+def _single_entries(tables: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """The tables with single monitors in place of rows, and single joints in place of sets; and their mistakes."""
+    tables, of_rows = without_rows(tables)
+    tables, of_sets = without_sets(tables)
+    return tables, [*of_rows, *of_sets]
+
+
 SCHEMA = Schema(
     case=DiskCase,
     noun="disks",
@@ -241,12 +249,12 @@ SCHEMA = Schema(
         "group": TypeAdapter(Group),
         "hole": TypeAdapter(HoleTable),
         "wall": TypeAdapter(Wall),
-        "joint": TypeAdapter(Joint),
+        "joint": TypeAdapter(JointTable),
         "load": TypeAdapter(Load),
         "monitor": TypeAdapter(MonitorTable),
     },
     problems=problems_between,
     completed=completed_by_layers,
     completing={"material": "layer"},
-    expanded=without_rows,
+    expanded=_single_entries,
 )

@@ -50,8 +50,8 @@ class ContactList(RenewedList):
     at_rest : the stress with which contacts begin; None: without forces.
     factors : of the strengths of bonds; None: without scatter. dashpots : of contacts; None: there are none.
     intact : (m,) bool, particles whose bonds never break; None: all may break. lags : of each bond, 3K with K
-        relaxation arms, see `Contacts`. beside : (m,) number of the joint each particle is beside, opposite on its two
-        sides, else 0: particles of opposite numbers never touch. None: there are no joints.
+        relaxation arms, see `Contacts`. beside : (m, k) numbers of the joints each particle is beside, opposite on
+        their two sides, else 0: particles of opposite numbers never touch. None: there are no joints.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class ContactList(RenewedList):
         self.searches = self.limits.geometry != REFERENCE
         self._beside = None
         if beside is not None:
-            self._beside = np.zeros(self._slots.stop, dtype=np.int64)
+            self._beside = np.zeros((self._slots.stop, beside.shape[1]), dtype=np.int64)
             self._beside[self._slot] = beside
         self._apart = np.zeros(0, dtype=np.int64)
         self.skin = SKIN * ground.brick.mean_diameter
@@ -201,7 +201,7 @@ class ContactList(RenewedList):
         self._set_origin(other.origin[:, slots], other.skins[slots])
         first, second = first[left], second[left]
         if self._beside is not None and other._beside is not None:
-            self._beside[self._slot] = other._beside[other._slot[kept]]
+            self._beside[self._slot[~other._beside[other._slot[kept]].any(axis=1)]] = 0
             both, image = pairs_of(other._apart, other._slots.stop)
             one, two = (number[other.layout.node[each] - other.nodes.start] for each in both.T)
             stays = (one >= 0) & (two >= 0)

@@ -101,7 +101,8 @@ class RenewedList(PairList):
         """Whether pairs of some keys (k,) have faces on both sides of a joint, so that their disks never touch."""
         assert self._beside is not None
         one, other = self._beside[pairs_of(keys, self._slots.stop)[0].T]
-        return (one == -other) & (one != 0)
+        opposite: np.ndarray = ((one[:, :, None] == -other[:, None, :]) & (one[:, :, None] != 0)).any(axis=(1, 2))
+        return opposite
 
     def end_faces(self, displacement: np.ndarray, particles: np.ndarray) -> None:
         """Let particles (k,) whose faces have ended touch those beyond their joint, once they overlap no more.

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.joint import CORNERS, Joint, joint_ends
+from dembound.casefile.disks.joint import Joint, ends_on, joint_ends
 from dembound.casefile.messages import numbered
-from dembound.disks.faces.cells import intervals
+from dembound.disks.faces.line import Line
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
@@ -22,24 +22,32 @@ BESIDE = 1.5
 NEAR = 2.5
 """Distance from a joint, over the largest radius, within which disks may have a part of its line."""
 
-LOOSE = 10
-"""Disks of a piece that the joint cuts off and that counts as one of its other side, if there are fewer."""
+LOOSE = 6
+"""Disks of a piece that the joint cuts off and that counts as one of its other side, if there are fewer.
+
+The smallest blocks between joints, of three diameters each way, have some nine."""
+
+AT_END = 4.0
+"""Distance from an end on another joint, over the largest diameter, within which disks beyond that are left out."""
 
 
 @dataclass(frozen=True, eq=False)
 class Faces:
     """The m faces of a joint, those of the disks on the left of its line before those on the right.
 
+    Also those of several joints of the same constants, see `merged`, whose sides are not in one array.
+
     Attributes
     ----------
-    joint : its table. split : number of faces on the left. disk : (m,) of each, among the scene's.
-    ends : (m, 2, 2) m, ends of each face at the start. along : (m, 2) unit vector along the line.
+    joints : their tables; part : (m,) number of that of each face. split : number of faces on the left. disk : (m,) of
+    each, among the scene's. ends : (m, 2, 2) m, of each face at the start. along : (m, 2) unit vector along the line.
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
     removed : (2, m) Pa/m, normal and shear stiffness per area of the contacts that it replaces, in the ground of each
     face. cut : number of these. ended_at : sides before which it ends, as ground goes on beyond them.
     """
 
-    joint: Joint
+    joints: tuple[Joint, ...]
+    part: np.ndarray
     split: int
     disk: np.ndarray
     ends: np.ndarray
@@ -48,6 +56,11 @@ class Faces:
     removed: np.ndarray
     cut: int
     ended_at: tuple[str, ...] = ()
+
+    @property
+    def joint(self) -> Joint:
+        """The table of the only joint, or the first of the same constants."""
+        return self.joints[0]
 
     @property
     def length(self) -> float:
@@ -60,9 +73,9 @@ class Faces:
         number[kept] = begin + np.arange(len(kept))
         left = self.left_of(kept)
         side = np.concatenate([np.zeros(begin, np.int8), self.side[kept]])
-        each = (values[left] for values in (number[self.disk], self.ends, self.along))
-        split, removed = int(np.count_nonzero(left[: self.split])), self.removed[:, left]
-        return Faces(self.joint, split, *each, side, removed, self.cut, self.ended_at)
+        own = {name: getattr(self, name)[left] for name in ("part", "ends", "along")}
+        own |= {"split": int(np.count_nonzero(left[: self.split])), "disk": number[self.disk][left], "side": side}
+        return replace(self, **own, removed=self.removed[:, left])
 
     def left_of(self, kept: np.ndarray) -> np.ndarray:
         """Whether each face (m,) is that of a disk among those kept (k,)."""
@@ -87,25 +100,40 @@ def in_series(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def faces_of(
-    joint: Joint, ground: PackedMaterial, assembly: Assembly, body: slice, box: Box, ends: Mapping[str, float]
+    joint: Joint,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    body: slice,
+    box: Box,
+    ends: Mapping[str, float],
+    earlier: Sequence[Faces] = (),
 ) -> Faces:
     """The faces of a joint in a body: the range of its disks, in a box left, bottom, right, top (m).
 
-    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it. ends : m,
-    how far from some sides the line ends, see `joint_ends`.
+    Ends of the line inside the box are those of whole cells: a joint has the faces of the disks beside it. Where it
+    ends on the line of an earlier joint, it ends there, and has no faces of disks beyond. ends : m, how far from some
+    sides the line ends, see `joint_ends`.
     """
-    line = _Line(np.array(joint.points), box, ends)
+    line, largest = Line(np.array(joint.points), box, ends), 2.0 * float(assembly.radii.max())
+    distance, place = line.nearest(assembly.positions)
+    beyond = np.zeros(len(distance), dtype=np.bool_)
+    for other in earlier:
+        for end in np.flatnonzero(ends_on(np.array(joint.points), np.array(other.joint.points), 0.5 * largest)):
+            near_end = (place if end == 0 else line.length - place) < AT_END * largest
+            beyond |= near_end & _is_across(other, line.points[[0, 1] if end == 0 else [-1, -2]], assembly, box)
+            line.open[end] = line.held[end] = True
     distance, place = line.nearest(assembly.positions)
     within = np.zeros(len(distance), dtype=np.bool_)
     within[body] = (place[body] > 0.0) & (place[body] < line.length)
     side = np.where(distance >= 0.0, 1, -1)
-    side = np.where(within & (np.abs(distance) <= 2.0 * BESIDE * float(assembly.radii.max())), side, 0)
+    side = np.where(within & ~beyond & (np.abs(distance) <= BESIDE * largest), side, 0)
     side = _by_contacts(assembly, side)
     crossing = side[assembly.pairs].prod(axis=1) < 0
     touching = np.zeros(len(side), dtype=np.bool_)
     touching[assembly.pairs.ravel()] = True
     near = np.abs(distance) <= NEAR * float(assembly.radii.max())
     near[: body.start] = near[body.stop :] = False
+    near &= ~beyond
     found: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     split = 0
     for way in (1, -1):
@@ -113,12 +141,22 @@ def faces_of(
         found += line.faces(own, side, assembly.positions, assembly.radii)
         split = sum(len(each[0]) for each in found) if way == 1 else split
     disk, parts, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    faces = Faces(joint, split, disk, parts, along, side.astype(np.int8), np.zeros((2, len(disk))), int(crossing.sum()))
+    part, removed, sides = np.zeros(len(disk), dtype=np.int64), np.zeros((2, len(disk))), side.astype(np.int8)
+    faces = Faces((joint,), part, split, disk, parts, along, sides, removed, int(crossing.sum()))
     if not (faces.has_two_sides and crossing.any()):
         return faces
     there = [np.abs(parts - point).max(axis=2).min() < 2.0 * assembly.radii.max() for point in line.points[[0, -1]]]
     ended_at = tuple(side for side, is_there in zip(line.ended_at, there, strict=True) if side and is_there)
     return replace(faces, removed=_stiffness(faces, ground, assembly, crossing), ended_at=ended_at)
+
+
+def _is_across(other: Faces, way: np.ndarray, assembly: Assembly, box: Box) -> np.ndarray:
+    """Disks (n,) on the other side of a joint than the second of two points (2, 2) m, of which the first is on it."""
+    line = Line(np.array(other.joint.points), box, {})
+    distance, _ = line.nearest(np.vstack([0.5 * (way[0] + way[1]), assembly.positions]))
+    side = np.where(other.side != 0, other.side, np.sign(distance[1:]))
+    across: np.ndarray = side * np.sign(distance[0]) < 0.0
+    return across
 
 
 def with_joints(
@@ -134,25 +172,85 @@ def with_joints(
     excavation, and the disks (k,) left of the body then; those that are left stay as they were.
     """
     faces = _found(case, ground, assembly, begin) if before is None else _left(*before, begin)
-    if not faces:
-        return assembly, ()
-    crossing = np.any([each.side[assembly.pairs].prod(axis=1) < 0 for each in faces], axis=0)
-    left = replace(assembly, pairs=assembly.pairs[~crossing], contact_type=assembly.contact_type[~crossing])
-    return left, faces
+    for each in faces:
+        assembly = _cut(assembly, each)
+    return assembly, faces
+
+
+def _cut(assembly: Assembly, faces: Faces) -> Assembly:
+    """An assembly without the contacts across a joint."""
+    kept = faces.side[assembly.pairs].prod(axis=1) >= 0
+    return replace(assembly, pairs=assembly.pairs[kept], contact_type=assembly.contact_type[kept])
+
+
+def alike(faces: Sequence[Faces]) -> list[list[Faces]]:
+    """The joints of the same constants together, as those of a set, in the order of the first of each."""
+    groups: dict[tuple[object, ...], list[Faces]] = {}
+    for each in faces:
+        groups.setdefault(each.joint.constants, []).append(each)
+    return list(groups.values())
+
+
+def merged(faces: Sequence[Faces]) -> tuple[Faces, ...]:
+    """The faces of all joints, those of the same constants as one."""
+    return tuple(_as_one(group) for group in alike(faces))
+
+
+def _as_one(faces: Sequence[Faces]) -> Faces:
+    """The faces of several joints of the same constants as those of one."""
+    if len(faces) == 1:
+        return faces[0]
+    order = [(each, slice(0, each.split)) for each in faces] + [(each, slice(each.split, None)) for each in faces]
+    number = {id(each): k for k, each in enumerate(faces)}
+    return Faces(
+        joints=tuple(each.joint for each in faces),
+        part=np.concatenate([np.full(len(each.disk[own]), number[id(each)]) for each, own in order]),
+        split=sum(each.split for each in faces),
+        disk=np.concatenate([each.disk[own] for each, own in order]),
+        ends=np.concatenate([each.ends[own] for each, own in order]),
+        along=np.concatenate([each.along[own] for each, own in order]),
+        side=np.zeros(0, dtype=np.int8),
+        removed=np.concatenate([each.removed[:, own] for each, own in order], axis=1),
+        cut=sum(each.cut for each in faces),
+        ended_at=tuple(dict.fromkeys(side for each in faces for side in each.ended_at)),
+    )
 
 
 def _found(case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int) -> tuple[Faces, ...]:
     """The faces of all joints of a case, see `with_joints`; raises CaseError for joints without any."""
     body, ends = slice(begin, len(assembly.radii)), joint_ends(case.boundary, case.intact, 2.0 * case.packing.radius)
-    faces = tuple(faces_of(joint, ground, assembly, body, case.packing.box, ends) for joint in case.joint)
+    found = list[Faces]()
+    for joint in case.joint:
+        found.append(faces_of(joint, ground, assembly, body, case.packing.box, ends, found))
+        assembly = _cut(assembly, found[-1])
+    faces = tuple(each for each in found if (each.has_two_sides and each.cut) or not each.joint.is_of_set)
     if nowhere := [
-        place for (place, _), each in zip(numbered("joint", case.joint), faces, strict=True) if not each.cut
+        place
+        for (place, _), each in zip(numbered("joint", case.joint), found, strict=True)
+        if not each.cut and not each.joint.is_of_set
     ]:
         beside = "of the ground that is not beside a side beyond which ground goes on" if ends else "of the ground"
         raise CaseError(
             [f"{place}.points: has no disks on both sides, must cross a part {beside}" for place in nowhere]
         )
-    return faces
+    return faces if len(faces) == 1 else _with_means(faces, ground, assembly)
+
+
+def _with_means(faces: tuple[Faces, ...], ground: PackedMaterial, assembly: Assembly) -> tuple[Faces, ...]:
+    """Faces with the mean stiffness of the contacts that all joints of the same constants replace, by layer.
+
+    The contacts of one line are too few for a mean.
+    """
+    zones = {each.joint.name: ground.zone_of(assembly.positions[each.disk]) for each in faces}
+    found = {each.joint.name: each.removed.copy() for each in faces}
+    for group in alike(faces):
+        for zone in np.unique(np.concatenate([zones[each.joint.name] for each in group])):
+            there = [each for each in group if zone in zones[each.joint.name]]
+            own = [each.removed[:, zones[each.joint.name] == zone][:, 0] for each in there]
+            mean = np.average(own, axis=0, weights=[each.length for each in there])
+            for each in there:
+                found[each.joint.name][:, zones[each.joint.name] == zone] = mean[:, None]
+    return tuple(replace(each, removed=found[each.joint.name]) for each in faces)
 
 
 def _left(before: Sequence[Faces], kept: np.ndarray, begin: int) -> tuple[Faces, ...]:
@@ -161,16 +259,23 @@ def _left(before: Sequence[Faces], kept: np.ndarray, begin: int) -> tuple[Faces,
 
 
 def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:
-    """Number (n,) of the joint that each disk is beside, negative on the right of it, else 0; None without any.
+    """Numbers (n, k) of the joints that each disk is beside, negative on the right of them, else 0; None without any.
 
-    Disks of opposite numbers never touch.
+    faces : of each joint. Disks of opposite numbers never touch.
     """
     if not faces:
         return None
-    found = np.zeros(len(faces[0].side), dtype=np.int64)
+    count = np.zeros(len(faces[0].side), dtype=np.int64)
+    columns = [np.zeros_like(count)]
     for number, each in enumerate(faces, start=1):
-        found = np.where(found == 0, number * each.side.astype(np.int64), found)
-    return found
+        beside = np.flatnonzero(each.side)
+        while len(columns) <= count[beside].max(initial=0):
+            columns.append(np.zeros_like(count))
+        for place in np.unique(count[beside]):
+            own = beside[count[beside] == place]
+            columns[place][own] = number * each.side[own].astype(np.int64)
+        count[beside] += 1
+    return np.stack(columns, axis=1)
 
 
 def _by_contacts(assembly: Assembly, side: np.ndarray) -> np.ndarray:
@@ -216,91 +321,4 @@ def _stiffness(faces: Faces, ground: PackedMaterial, assembly: Assembly, crossin
         across = np.sum(normal * (1.0 - straight) + shear * straight)
         along_it = np.sum(normal * straight + shear * (1.0 - straight))
         found[:, zone == number] = np.array([[across], [along_it]]) / faces.length
-    return found
-
-
-class _Line:
-    """A polyline of points (k, 2) m in a box, of which ends outside are cut off; ``length`` (m) is what is left.
-
-    ends : m, how far from some sides it ends. open : whether each end is at a side; ended_at : the side before which
-    each ends, or empty.
-    """
-
-    def __init__(self, points: np.ndarray, box: Box, ends: Mapping[str, float]) -> None:
-        near = [ends.get(side, 0.0) for side in CORNERS]
-        inner = box[0] + near[0], box[1] + near[1], box[2] - near[2], box[3] - near[3]
-        outer = [not _is_inside(point, inner) for point in points[[0, -1]]]
-        each = zip(outer, points[[1, -2]], points[[0, -1]], strict=True)
-        first, last = (_entry(inside, end, inner) if out else end for out, inside, end in each)
-        self.open = [out and not _is_inside(end, box) for out, end in zip(outer, (first, last), strict=True)]
-        self.ended_at = [
-            CORNERS[int(np.abs(end[[0, 1, 0, 1]] - inner).argmin())] if out and not is_open else ""
-            for out, is_open, end in zip(outer, self.open, (first, last), strict=True)
-        ]
-        self.points = np.vstack([first, points[1:-1], last])
-        steps = np.diff(self.points, axis=0)
-        self.lengths = np.hypot(*steps.T)
-        self.along = steps / np.maximum(self.lengths, 1e-300)[:, None]  # 0 where all of it is cut off
-        self.begins = np.concatenate([[0.0], np.cumsum(self.lengths)])
-        self.length = float(self.begins[-1])
-
-    def nearest(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Distance to the left (n,) m and place along the line (n,) m of the segment nearest to positions (n, 2) m.
-
-        Places are negative before its beginning, and go on beyond its end. Beyond an end at a
-        side of the body the joint goes on.
-        """
-        least, found = np.full(len(positions), np.inf), np.zeros((2, len(positions)))
-        for number, (start, along, length) in enumerate(zip(self.points, self.along, self.lengths, strict=False)):
-            x, y = (positions - start).T
-            place, left = x * along[0] + y * along[1], y * along[0] - x * along[1]
-            past = np.hypot(left, place - np.clip(place, 0.0, length))
-            nearer = past < least
-            least = np.where(nearer, past, least)
-            low = 0.0 if number > 0 else -np.inf
-            high = length if number < len(self.lengths) - 1 else np.inf
-            on_line = self.begins[number] + np.clip(place, low, high)
-            found = np.where(nearer, np.stack([left, on_line]), found)
-        left, here = found
-        tiny = 1e-6 * self.length
-        here = np.maximum(here, tiny) if self.open[0] else here
-        here = np.minimum(here, self.length - tiny) if self.open[1] else here
-        return left, here
-
-    def faces(
-        self, disks: np.ndarray, side: np.ndarray, positions: np.ndarray, radii: np.ndarray
-    ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Disk (f,), ends (f, 2, 2) m and direction (f, 2) of the faces of one side's disks (k,) on each segment.
-
-        side : (n,), see `Faces`; disks without a side limit the cells of others, and have no faces.
-        """
-        found = []
-        for number, (start, along, length) in enumerate(zip(self.points, self.along, self.lengths, strict=False)):
-            x, y = (positions[disks] - start).T
-            place, left = x * along[0] + y * along[1], y * along[0] - x * along[1]
-            low, high = intervals(place, left, radii[disks])
-            if number > 0 or self.open[0]:
-                low = np.maximum(low, 0.0)
-            if number < len(self.lengths) - 1 or self.open[1]:
-                high = np.minimum(high, length)
-            chosen = np.flatnonzero((high > low) & (side[disks] != 0))
-            chosen = chosen[np.argsort(low[chosen], kind="stable")]
-            ends = start + np.stack([low, high], axis=1)[chosen, :, None] * along
-            found.append((disks[chosen], ends, np.repeat(along[None], len(chosen), axis=0)))
-        return found
-
-
-def _is_inside(point: np.ndarray, box: Box) -> bool:
-    """Whether a point (2,) m lies in a box, not on its sides."""
-    left, bottom, right, top = box
-    near = 1e-9 * max(right - left, top - bottom)
-    return bool(left + near < point[0] < right - near and bottom + near < point[1] < top - near)
-
-
-def _entry(inside: np.ndarray, outside: np.ndarray, box: Box) -> np.ndarray:
-    """Where the line from a point (2,) m to one outside of the box leaves it; from outside, that where it goes in."""
-    low, high, step = np.array(box[:2]), np.array(box[2:]), outside - inside
-    with np.errstate(divide="ignore", invalid="ignore"):
-        limits = np.where(step > 0.0, (high - inside) / step, np.where(step < 0.0, (low - inside) / step, np.inf))
-    found: np.ndarray = inside + np.clip(limits.min(), 0.0, 1.0) * step
     return found

@@ -1,8 +1,8 @@
-"""The forces of a joint on the disks beside it, as a tie of the scene, with their history."""
+"""The forces of joints on the disks beside them, as a tie of the scene, with their history."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +11,11 @@ from dembound.disks.faces.found import Faces
 from dembound.disks.material.at_rest import StressAtRest, UnlikeStress
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import RunError
-from dembound.kernels.joints import EVENTS, NEEDED, PAIRS, STEPS, list_faces, push_faces
+from dembound.kernels.joint_notes import EVENTS, NEEDED, PAIRS, STEPS
+from dembound.kernels.joints import list_faces, push_faces
 from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
-from dembound.motion.part import Cracks, Tie, joined
-from dembound.motion.state import Arrays, Layout, arrays_of_owner
+from dembound.motion.part import Cracks, Tie
+from dembound.motion.state import Arrays, Layout
 
 ROOM = 8
 """Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other."""
@@ -25,18 +26,24 @@ MARGIN = 0.25
 TURNED = 0.2
 """Turn (rad) of a disk at which its face ends: it is no longer part of a block that slides."""
 
+ROWS = 1024
+"""Steps of which means over each joint are kept for the record; the loop returns within a quarter of them."""
+
+HOLDS, CLOSED, SLIDES, OPEN = range(4)
+"""States of a place of a joint: with its strength, or without it pressed together, sliding, or apart."""
+
 DELAY = 1.0
 """Way of P waves, over the mean diameter, in the time in which friction follows a change of pressure."""
 
 
 class JointTie(Tie):
-    """The faces of a joint with what they remember.
+    """The faces of joints of the same constants with what they remember.
 
     Parameters
     ----------
-    faces : of the joint. positions : (n, 2) m of the scene's disks. ground : their material. gives : (3, n) inverse
-    masses and moments of inertia of the scene's nodes, 0 for what is held or prescribed. layout : slots of the scene.
-    time_step : s. at_rest : the stress with which the faces begin; None: without.
+    faces : of the joints, see `merged`. positions : (n, 2) m of the scene's disks. ground : their material. gives :
+    (3, n) inverse masses and moments of inertia of the scene's nodes, 0 for what is held or prescribed. layout : slots
+    of the scene. time_step : s. at_rest : the stress with which the faces begin; None: without.
     """
 
     def __init__(
@@ -69,6 +76,8 @@ class JointTie(Tie):
                 friction=float(joint.fric or 0.0),
                 tension=joint.ten,
                 cohesion=joint.coh,
+                dilation=float(np.tan(np.radians(joint.dilation))),
+                dilation_end=np.inf if joint.dilation_end is None else joint.dilation_end,
                 dashpot=joint.dashpot * impedance,
                 step=time_step,
                 follows=1.0 - float(np.exp(-time_step * speed / (DELAY * diameter))),
@@ -77,6 +86,7 @@ class JointTie(Tie):
                 reach=diameter,
             ),
             split=faces.split,
+            part=faces.part,
             disk=layout.slot[faces.disk].astype(np.int64),
             line=np.zeros(count, dtype=np.int64),
             centre=centre,
@@ -85,8 +95,9 @@ class JointTie(Tie):
             height=height,
             stiffness=faces.stiffness,
             closure=0.5 * pressure / faces.stiffness[0],
-            pairs=_empty_pairs(room),
-            spare=_empty_pairs(room),
+            rest=shear / faces.stiffness[1],
+            pairs=empty_pairs(room),
+            spare=empty_pairs(room),
             counts=np.zeros(4, dtype=np.int64),
             listed=np.zeros((count, 2)),
             now=np.zeros((count, 4)),
@@ -95,6 +106,8 @@ class JointTie(Tie):
             kick=np.zeros((count, 3)),
             lost=np.zeros(3),
             events=np.zeros((room, 6)),
+            record=np.zeros((ROWS, len(faces.joints), 7)),
+            first=np.full((len(faces.joints), 2), -1),
         )
         self._begin(shear)
 
@@ -112,6 +125,7 @@ class JointTie(Tie):
         push_faces(bundle, rest, rest)
         bundle.counts[STEPS] = 0
         bundle.lost[:] = 0.0
+        bundle.first[:] = -1
 
     def _stress(self, at_rest: StressAtRest | UnlikeStress | None, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressure, and shear stress along the line on the left side, (m,) Pa each, of faces with normals (m, 2)."""
@@ -162,8 +176,63 @@ class JointTie(Tie):
     def pressed(self) -> np.ndarray:
         """Disks (k,) of faces that press on others, or are held by the joint's strength."""
         pairs = self.acting
-        there = (pairs.pressure > 0.0) | pairs.intact | self.faces.joint.is_linear
+        there = self.closed(pairs)
         return self.faces.disk[np.concatenate([pairs.first[there], pairs.second[there]])]
+
+    def slip(self, pairs: FacePairs) -> np.ndarray:
+        """Slip (k,) m of pairs since the start, of the left side along the line."""
+        rest = self._bundle.rest
+        slid: np.ndarray = pairs.slip - 0.5 * (rest[pairs.first] + rest[pairs.second])
+        return slid
+
+    def closed(self, pairs: FacePairs) -> np.ndarray:
+        """Whether pairs (k,) press on each other, or are held by the joint's strength."""
+        there: np.ndarray = (pairs.pressure > 0.0) | pairs.intact | self.faces.joint.is_linear
+        return there
+
+    def samples(self, steps: np.ndarray) -> np.ndarray:
+        """Means over each joint (k, l, 6) in some of the last steps (k,): slip and opening (m) to the shares (1).
+
+        The columns are those of the kernels' record; 0 where no faces lie opposite each other.
+        """
+        found = self._bundle.record[steps % ROWS]
+        means: np.ndarray = found[..., 1:] / np.where(found[..., :1] > 0.0, found[..., :1], 1.0)
+        return means
+
+    @property
+    def first(self) -> np.ndarray:
+        """Steps (l, 2) in which each joint first slid and opened; −1 if it has not."""
+        return self._bundle.first
+
+    def segments(self, pairs: FacePairs) -> dict[str, np.ndarray]:
+        """Where pairs (k,) that overlap lie opposite each other, and what the joint does there.
+
+        ends : (k, 4) m, x and y of both ends on the left side, at the start. joint : (k,) number among those of the
+        tie. particles : (k, 2) disks left and right. state : (k,) HOLDS, CLOSED, SLIDES or OPEN. Others as in `slip`,
+        and of `FacePairs`.
+        """
+        bundle, own, other = self._bundle, pairs.first, pairs.second
+        along = bundle.along[own] + bundle.along[other]
+        along /= np.hypot(*along.T)[:, None]
+        begin = bundle.now[own, :2]
+        whole, first, last = (
+            np.sum((place - begin) * along, axis=1)
+            for place in (bundle.now[own, 2:], bundle.now[other, :2], bundle.now[other, 2:])
+        )
+        start, length = bundle.ends[own, :2], bundle.ends[own, 2:] - bundle.ends[own, :2]
+        parts = np.maximum(first, 0.0) / whole, np.minimum(last, whole) / whole
+        held = pairs.intact | self.faces.joint.is_linear
+        state = np.where(held, HOLDS, np.where(pairs.slides, SLIDES, np.where(pairs.pressure > 0.0, CLOSED, OPEN)))
+        return {
+            "ends": np.hstack([start + part[:, None] * length for part in parts]),
+            "joint": self.faces.part[own],
+            "particles": self.faces.disk[np.stack([own, other], axis=1)],
+            "slip": self.slip(pairs),
+            "opening": pairs.opening,
+            "pressure": pairs.pressure,
+            "shear": pairs.shear,
+            "state": state,
+        }
 
     def forces(self, pairs: FacePairs) -> np.ndarray:
         """Forces (2, k) N of the last step on the disks of the first faces of pairs."""
@@ -188,11 +257,11 @@ class JointTie(Tie):
         self._bundle.counts[EVENTS] = 0
         return found
 
-    def end_loose(self, displacement: np.ndarray, torn: np.ndarray) -> np.ndarray:
-        """End the faces of disks that are no longer parts of blocks along the joint, and return these disks (k,).
+    def loose(self, displacement: np.ndarray, torn: np.ndarray) -> np.ndarray:
+        """Disks (k,) with faces that are no longer parts of blocks along the joint.
 
-        These are disks that have turned by `TURNED`, have lost all bonds, or have moved by a diameter to where no disk
-        has a face on the other side.
+        They have turned by `TURNED`, have lost all bonds, or have moved by a diameter to where no disk has a face on
+        the other side.
 
         Parameters
         ----------
@@ -201,26 +270,29 @@ class JointTie(Tie):
         torn
             (n,) bool, whether disks have lost all bonds.
         """
-        faces, bundle = self.faces, self._bundle
-        there = np.flatnonzero((bundle.ends[:, :2] != bundle.ends[:, 2:]).any(axis=1))
-        disk = faces.disk[there]
+        faces, reach = self.faces, self._bundle.law.reach
+        there = np.flatnonzero((self._bundle.ends[:, :2] != self._bundle.ends[:, 2:]).any(axis=1))
+        disk, is_left, part = faces.disk[there], there < faces.split, faces.part[there]
         loose = (np.abs(displacement[2, disk]) > TURNED) | torn[disk]
-        for own in (there < faces.split, there >= faces.split):
-            if not (own.any() and (~own).any()):
-                continue
-            place = faces.ends[there].mean(axis=1) + displacement[:2, disk].T
-            way = faces.along[there[own]].mean(axis=0)
-            other, along = place[~own] @ way, place[own] @ way
-            half = 0.5 * bundle.law.reach
-            left = (along < other.min() - half) | (along > other.max() + half)
-            loose[own] |= left & (np.hypot(*displacement[:2, disk[own]]) > bundle.law.reach)
-        bundle.ends[there[loose], 2:] = bundle.ends[there[loose], :2]  # without length they overlap no more
+        place = np.sum((faces.ends[there].mean(axis=1) + displacement[:2, disk].T) * faces.along[there], axis=1)
+        for line in np.unique(part):
+            for way in (is_left, ~is_left):
+                own, beyond = np.flatnonzero(way & (part == line)), place[~way & (part == line)]
+                if len(own) and len(beyond):
+                    gone = (place[own] < beyond.min() - 0.5 * reach) | (place[own] > beyond.max() + 0.5 * reach)
+                    loose[own] |= gone & (np.hypot(*displacement[:2, disk[own]]) > reach)
         return disk[loose]
+
+    def end_faces(self, disks: np.ndarray) -> None:
+        """End the faces of some disks (k,): without length they overlap no more."""
+        ended = np.isin(self.faces.disk, disks)
+        self._bundle.ends[ended, 2:] = self._bundle.ends[ended, :2]
 
     def saved_arrays(self) -> Arrays:
         """The pairs with their history, events not yet recorded, and the faces, of which some may have ended."""
         bundle = self._bundle
-        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in ("counts", "listed", "events", "ends")}
+        names = ("counts", "listed", "events", "ends", "first")
+        kept: dict[str, np.ndarray] = {name: getattr(bundle, name) for name in names}
         return kept | {f"pair_{name}": values for name, values in bundle.pairs._asdict().items()}
 
     def restore(self, saved: Arrays) -> None:
@@ -240,40 +312,10 @@ class JointTie(Tie):
         """Take over the history (arrays of `saved_arrays`) of the joint of a settled body; steps are counted anew."""
         self.restore(saved)
         self._bundle.counts[[STEPS, EVENTS]] = 0
+        self._bundle.first[:] = -1
 
 
-def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
-    """The arrays of all joints, copied, by the names of joint and array."""
-    return {f"{tie.name}/{name}": values.copy() for tie in ties for name, values in tie.saved_arrays().items()}
-
-
-def states_among(
-    states: Arrays, before: Sequence[Faces], after: Sequence[Faces], kept: np.ndarray
-) -> dict[str, np.ndarray]:
-    """The arrays of joints (`states_of`) of which only the faces of disks kept (k,) are left after an excavation."""
-    of_name, found = {each.joint.name: each for each in before}, {}
-    for faces in after:
-        owner = f"joint_{faces.joint.name}"
-        saved, left = arrays_of_owner(states, owner), of_name[faces.joint.name].left_of(kept)
-        number, room = np.cumsum(left) - 1, ROOM * len(faces.disk)
-        first, second = (saved[f"pair_{name}"][: saved["counts"][PAIRS]] for name in ("first", "second"))
-        chosen = np.flatnonzero(left[first] & left[second])
-        own = {"listed": saved["listed"][left], "events": np.zeros((room, 6))}
-        own["counts"] = np.array([len(chosen), 0, 0, len(chosen)])
-        for name, empty in _empty_pairs(room)._asdict().items():
-            values = saved[f"pair_{name}"][chosen]
-            empty[: len(chosen)] = number[values] if name in ("first", "second") else values
-            own[f"pair_{name}"] = empty
-        found |= {f"{owner}/{name}": values for name, values in own.items()}
-    return found
-
-
-def cracks_of(ties: Sequence[JointTie]) -> Cracks:
-    """The places of all joints that lost their strength since the last call."""
-    return joined([tie.take_cracks() for tie in ties])
-
-
-def _empty_pairs(room: int) -> FacePairs:
+def empty_pairs(room: int) -> FacePairs:
     """Places for pairs."""
     whole, flags, values = np.int64, np.bool_, np.float64
     kinds: Mapping[str, type] = {"first": whole, "second": whole, "intact": flags, "slides": flags}
@@ -284,5 +326,8 @@ def _empty_pairs(room: int) -> FacePairs:
 def _copied(bundle: JointFaces) -> JointFaces:
     """A bundle whose history can change without that of another."""
     pairs = FacePairs(*(each.copy() for each in bundle.pairs))
-    own = {name: getattr(bundle, name).copy() for name in ("counts", "listed", "now", "force", "lost", "events")}
+    own = {
+        name: getattr(bundle, name).copy()
+        for name in ("counts", "listed", "now", "force", "lost", "events", "record", "first")
+    }
     return bundle._replace(pairs=pairs, **own)

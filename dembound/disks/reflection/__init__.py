@@ -225,7 +225,7 @@ def _in_layer(case: DiskCase, side: str, layer: str | None) -> DiskCase:
         if layer and layer in names
         else case.layer_at(case.box[3 if side == "top" else 1])
     )
-    alone = case.uniform_at([case.box[3], *case.joints][number] - case.packing.radius)
+    alone = case.uniform_at([case.box[3], *case.layer_planes][number] - case.packing.radius)
     return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(whole))[0]}))
 
 

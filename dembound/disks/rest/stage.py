@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.disks.columns import COLUMNS
-from dembound.disks.faces.tie import cracks_of, states_among, states_of
+from dembound.disks.faces.states import cracks_of, states_among, states_of
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene

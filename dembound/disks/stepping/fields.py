@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import chain
 from typing import NamedTuple
 
@@ -11,7 +12,8 @@ import numpy as np
 from dembound.continuum.part import GridPart
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts.pairs import Piece, contact_columns, pieces, plain_contacts
-from dembound.disks.faces.tie import JointTie, cracks_of
+from dembound.disks.faces.states import cracks_of
+from dembound.disks.faces.tie import JointTie
 from dembound.disks.stepping.damped_ground import unrelaxed
 from dembound.disks.stepping.part import DiskPart
 from dembound.disks.stepping.scene_parts import DiskParts
@@ -143,6 +145,28 @@ class RecordedDisks(System):
     def recorded_parts(self) -> tuple[DiskPart, ...]:
         """The parts whose nodes are recorded as particles, those of disks."""
         return self.disks.parts
+
+    @cached_property
+    def _joint_numbers(self) -> list[np.ndarray]:
+        """Numbers, in the order of the case, of the joints of each tie."""
+        numbers = {joint.name: number for number, joint in enumerate(self.scene.case.joint)}
+        return [np.array([numbers[joint.name] for joint in tie.faces.joints]) for tie in self.joints]
+
+    def joint_samples(self, steps: np.ndarray) -> np.ndarray:
+        """Means over joints (k, j, 6), see `JointTie.samples`."""
+        found = np.zeros((len(steps), len(self.scene.case.joint), 6))
+        for tie, numbers in zip(self.joints, self._joint_numbers, strict=True):
+            found[:, numbers] = tie.samples(steps)
+        return found
+
+    def joint_segments(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Columns of the segments of joints with units, see `JointTie.segments`; numbers are those of the case."""
+        each = [tie.segments(tie.acting) for tie in self.joints]
+        for columns, numbers in zip(each, self._joint_numbers, strict=True):
+            columns["joint"] = numbers[columns["joint"]]
+        units = {"ends": "m", "slip": "m", "opening": "m", "pressure": "Pa", "shear": "Pa"}
+        names = each[0] if each else ()
+        return {name: (np.concatenate([one[name] for one in each]), units.get(name, "1")) for name in names}
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) in contacts, with that of joints, and in bonds at displacements (3, slots)."""

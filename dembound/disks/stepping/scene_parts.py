@@ -15,7 +15,7 @@ from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.contacts.dashpots import Dashpots
 from dembound.disks.contacts.layout import with_supports
 from dembound.disks.contacts.row_plan import RowPlan, plan_rows
-from dembound.disks.faces.found import numbers_beside
+from dembound.disks.faces.found import merged, numbers_beside
 from dembound.disks.faces.tie import JointTie
 from dembound.disks.material.constants import bond_factors, ground_limits
 from dembound.disks.material.grouped import BEFORE, GroupedGround
@@ -205,7 +205,7 @@ def joint_ties(scene: DiskBody, start: Start | None, time_step: float) -> list[J
     """The joints of a scene, with the history of the body from which it starts, or as built."""
     gives = scene.moves / np.stack([scene.mass, scene.mass, scene.inertia])
     ties = []
-    for faces in scene.faces:
+    for faces in merged(scene.faces):
         tie = JointTie(faces, scene.assembly.positions, scene.ground, gives, scene.layout, time_step, scene.at_rest)
         if start is not None and start.joints:
             tie.go_on_from(arrays_of_owner(start.joints, tie.name))

@@ -172,7 +172,9 @@ class DiskSystem(RecordedDisks):
         broken, intact = (np.isin(body.of("state"), states) for states in ((TENSION, SHEAR), (INTACT,)))
         for chosen, value in ((broken, True), (intact, False)):
             torn[np.concatenate([particles[chosen] for particles in body.pairs]) + body.nodes.start] = value
-        ended = np.unique(np.concatenate([joint.end_loose(displacement, torn) for joint in self.joints]))
+        ended = np.unique(np.concatenate([joint.loose(displacement, torn) for joint in self.joints]))
+        for joint in self.joints:
+            joint.end_faces(ended)
         body.end_faces(displacement, ended - body.nodes.start)
 
     @property

@@ -281,13 +281,13 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
         incident = incident_in(case, media[-1])
         early = min(float(incident.delays(outside.body.mesh.positions).min()), 0.0)
         span = wave.begin(), case.run.duration - early
-        found = oblique_in_layers(media, case.joints, outside.free_surface, incident, wave, span, grain)
+        found = oblique_in_layers(media, case.layer_planes, outside.free_surface, incident, wave, span, grain)
         if found is None:
             raise CaseError([_beyond(case, media)])
     else:
         found = rising_in_layers(
             media,
-            case.joints,
+            case.layer_planes,
             outside.free_surface,
             (wave, None) if table.type == "sv" else (None, wave),
             reference_point(case)[1],

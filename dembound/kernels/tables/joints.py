@@ -1,4 +1,4 @@
-"""Arrays of a joint: faces of disks on both sides of a line, and the pairs of faces that lie opposite each other."""
+"""Arrays of joints: faces of disks on both sides of lines, and the pairs of faces that lie opposite each other."""
 
 from typing import NamedTuple
 
@@ -8,14 +8,16 @@ import numpy as np
 class JointLaw(NamedTuple):
     """Constants of a joint: friction, tension and cohesion Pa, dashpot Pa·s/m of sliding faces, step s.
 
-    follows : share of a change of pressure that friction follows in a step. fails : whether its faces part and slide.
-    margin : m, by which faces on the list of pairs may lie apart. reach : m, gap of a pair above which it is not
-    listed.
+    dilation : tangent of its angle, up to a slip dilation_end, m. follows : share of a change of pressure that friction
+    follows in a step. fails : whether its faces part and slide. margin : m, by which faces on the list of pairs may lie
+    apart. reach : m, gap of a pair above which it is not listed.
     """
 
     friction: float
     tension: float
     cohesion: float
+    dilation: float
+    dilation_end: float
     dashpot: float
     step: float
     follows: float
@@ -32,7 +34,7 @@ class FacePairs(NamedTuple):
     (p,) m, overlap in the last step; pressure, shear, drag : (p,) Pa, its normal stress, positive if it pushes, its
     shear stress on the first face along its line, and the normal stress of the dashpot; bearing : (p,) Pa, the pressure
     that friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the
-    line. energy : (p,) J.
+    line. energy : (p,) J. opening : (p,) m, by which its faces have moved apart since the start.
     """
 
     first: np.ndarray
@@ -49,25 +51,29 @@ class FacePairs(NamedTuple):
     arm: np.ndarray
     energy: np.ndarray
     bearing: np.ndarray
+    opening: np.ndarray
 
 
 class JointFaces(NamedTuple):
-    """A joint of m faces, of which `split` are on the left of its line; see kernels/joints.py.
+    """Joints of the same constants: m faces, of which `split` are on the left of their lines; see kernels/joints.py.
 
-    law : its constants. disk : (m,) int64 slots of their disks; line : (m,) theirs in the support table. centre :
-    (m, 2), ends (m, 4) m, of the disk and x, y of both ends of the face at the start; along (m, 2) unit vector; height
-    (m,) m, of the centre from the face; stiffness (2, m) Pa/m, along n and t, of two such faces; closure (m,) m, by
-    which the face is pressed in at the start.
+    law : their constants. part : (m,) int64, number of the line of each face. disk : (m,) int64 slots of their disks;
+    line : (m,) theirs in the support table. centre : (m, 2), ends (m, 4) m, of the disk and x, y of both ends of the
+    face at the start; along (m, 2) unit vector; height (m,) m, of the centre from the face; stiffness (2, m) Pa/m,
+    along n and t, of two such faces; closure, rest (m,) m, by which the face is pressed in and sheared at the start.
     pairs, spare : the pairs, and space to list them anew; counts (4,) int64 : pairs listed, steps done, events noted,
-    and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed.
-    now : (m, 4) m, ends in this step. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held
-    or prescribed. force, kick : (m, 3) N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost
-    (3,) J: friction, crack and closing.
-    events : (k, 6) step, first and second face, x, y m, whether by shear, of places that lost their strength.
+    and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed. now :
+    (m, 4) m, ends in this step. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held or
+    prescribed. force, kick : (m, 3) N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost (3,)
+    J: friction, crack and closing. events : (k, 6) step, first and second face, x, y m, whether by shear, of places
+    that lost their strength. record : (r, l, 7) of each line in the last r steps the overlap, m, and times it slip and
+    opening, m, pressure and shear stress, Pa, on the left side along the line, and shares that are closed and that
+    slide. first : (l, 2) int64, step in which each first slid and opened, −1 if it has not.
     """
 
     law: JointLaw
     split: int
+    part: np.ndarray
     disk: np.ndarray
     line: np.ndarray
     centre: np.ndarray
@@ -76,6 +82,7 @@ class JointFaces(NamedTuple):
     height: np.ndarray
     stiffness: np.ndarray
     closure: np.ndarray
+    rest: np.ndarray
     pairs: FacePairs
     spare: FacePairs
     counts: np.ndarray
@@ -86,3 +93,5 @@ class JointFaces(NamedTuple):
     kick: np.ndarray
     lost: np.ndarray
     events: np.ndarray
+    record: np.ndarray
+    first: np.ndarray

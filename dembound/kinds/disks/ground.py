@@ -77,7 +77,7 @@ def describe_layers(scene: DiskScene) -> list[dict[str, Any]]:
 
 def _layers_of(case: DiskCase, ground: LayeredGround) -> list[dict[str, Any]]:
     """The layers of a case that are the same at both sides, see `describe_layers`."""
-    heights = (case.box[3], *case.joints, min([case.box[1], *case.joints[-1:]]))
+    heights = (case.box[3], *case.layer_planes, min([case.box[1], *case.layer_planes[-1:]]))
     joints = [*reversed(ground.joints), None]
     found = []
     for number, (name, material, joint) in enumerate(zip(case.layer_names, ground.materials, joints, strict=True)):

@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.faces.found import Faces
+from dembound.casefile.messages import counted
+from dembound.disks.faces.found import Faces, merged
 from dembound.disks.faces.tie import JointTie
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.system import DiskSystem
+from dembound.kernels.tables.joints import FacePairs
 from dembound.motion.trackers import Run
 from dembound.words import Entries, with_unit
 
@@ -20,22 +22,38 @@ def describe_joints(run: Run) -> dict[str, dict[str, Any]]:
     """What each joint of a run of disks has done, by name, see `docs/reference/results.md`; empty without joints."""
     if not isinstance(run.system, DiskSystem):
         return {}
-    return {joint.faces.joint.name: _describe(joint, run) for joint in run.system.joints}
+    ties = {joint.name: (tie, number) for tie in run.system.joints for number, joint in enumerate(tie.faces.joints)}
+    return {joint.name: _describe(*ties[joint.name], run) for joint in run.system.scene.case.joint}
 
 
-def _describe(joint: JointTie, run: Run) -> dict[str, Any]:
-    """Means over the length of overlaps at the last step, and the largest turn of a disk with a face."""
-    pairs, disks = joint.acting, joint.faces.disk
+def _describe(tie: JointTie, number: int, run: Run) -> dict[str, Any]:
+    """Means over the length of overlaps of a joint at the last step, first events, the largest turn beside it."""
+    pairs, disks = tie.acting, tie.faces.disk[tie.faces.part == number]
+    own = tie.faces.part[pairs.first] == number
+    pairs = FacePairs(*(each[own] for each in pairs))
     length = float(pairs.length.sum())
-    closed = (pairs.pressure > 0.0) | pairs.intact | joint.faces.joint.is_linear
-    means = {"pressure": pairs.pressure, "shear": pairs.shear, "slip": pairs.slip, "closed": closed}
+    means = {"pressure": pairs.pressure, "shear": pairs.shear, "slip": tie.slip(pairs), "opening": pairs.opening}
+    means |= {"closed": tie.closed(pairs), "sliding": pairs.slides}
+    first = [None if step < 0 else step * run.time_step for step in tie.first[number].tolist()]
     turned = np.abs(run.state.displacement[2, disks] - run.state.datum[2, disks])
     return {
         "overlap": length,
         **{key: float(np.sum(pairs.length * each) / length) if length else None for key, each in means.items()},
+        "slides_from": first[0],
+        "opens_from": first[1],
         "turn": float(turned.max()),
         "position": run.scene.positions[disks[turned.argmax()]].tolist(),
     }
+
+
+def first_events(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """Which joints slid and opened first, and when; found : of the summary."""
+    for key, words in (("slides_from", "slid"), ("opens_from", "opened")):
+        times = {name: each[key] for name, each in found.items() if each[key] is not None}
+        if times:
+            name = min(times, key=lambda name: times[name])
+            others = f", {counted(len(times) - 1, 'other')} later" if len(times) > 1 else ""
+            yield f"joint {name} {words} from t = {with_unit(times[name], 's')} on{others}"
 
 
 def joint_warnings(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
@@ -50,16 +68,24 @@ def joint_warnings(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
 
 
 def joint_facts(scene: DiskScene) -> Entries:
-    """Of every joint its faces, stiffness and strength."""
-    for faces in scene.faces:
-        yield f"joint {faces.joint.name}", f"{_faces_fact(faces)}; {_stiffness_fact(faces)}; {_strength_fact(faces)}"
+    """Of every joint, or all of a set or of equal constants, its faces, stiffness and strength."""
+    for faces in merged(scene.faces):
+        first, *others = (joint.name for joint in faces.joints)
+        name = f"joints {first} … {others[-1]}" if others else f"joint {first}"
+        yield name, f"{_faces_fact(faces)}; {_stiffness_fact(faces)}; {_strength_fact(faces)}"
 
 
 def _faces_fact(faces: Faces) -> str:
-    """Length, and number of faces on both sides."""
+    """Length, of several joints also their number and what is left out of their set, and number of faces."""
     left, right = faces.split, len(faces.disk) - faces.split
-    before = f", ends before {' and '.join(faces.ended_at)}" if faces.ended_at else ""
-    return f"{with_unit(faces.length, 'm')}, faces of {left} and {right} disks in place of {faces.cut} contacts{before}"
+    left_out = sum(joint.left_out for joint in faces.joints)
+    parts = [f"{len(faces.joints)} lines"] if len(faces.joints) > 1 else []
+    parts.append(with_unit(faces.length, "m"))
+    if left_out:
+        parts.append(f"{with_unit(left_out, 'm')} left out within three diameters of earlier joints")
+    if faces.ended_at:
+        parts.append(f"ends before {' and '.join(faces.ended_at)}")
+    return f"{', '.join(parts)}, faces of {left} and {right} disks in place of {faces.cut} contacts"
 
 
 def _stiffness_fact(faces: Faces) -> str:
@@ -81,4 +107,7 @@ def _strength_fact(faces: Faces) -> str:
         return "neither opens nor slides"
     strengths = (("ten", joint.ten), ("coh", joint.coh))
     given = [f"{name} {with_unit(value, 'Pa')}" for name, value in strengths if value > 0.0]
+    if joint.dilation:
+        end = "" if joint.dilation_end is None else f" up to a slip of {with_unit(joint.dilation_end, 'm')}"
+        given.append(f"dilation {joint.dilation:g}°{end}")
     return ", ".join([f"friction {joint.fric:g}", *given])

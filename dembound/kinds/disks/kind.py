@@ -35,7 +35,7 @@ from dembound.kernels.contacts import UPDATED
 from dembound.kinds.disks.debris import debris_columns, describe_debris
 from dembound.kinds.disks.facts import disk_facts
 from dembound.kinds.disks.incident_wave import with_incident_waves
-from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh, wall_mesh
+from dembound.kinds.disks.mesh import VIEW_SCRIPT, contact_mesh, continuum_mesh, disk_mesh, joint_mesh, wall_mesh
 from dembound.kinds.disks.summary import (
     asked_stress,
     describe_static,
@@ -207,12 +207,14 @@ class Disks(Kind[DiskCase, DiskScene]):
         return disk_outcome(summary)
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
-        """One vertex per disk, one line per contact if the record has contacts, walls, and the cells of a continuum."""
+        """One vertex per disk, one line per contact if the record has contacts, walls, joints, cells of a continuum."""
         meshes = {"particles": disk_mesh(particles, snapshot, cracks)}
         if "contacts/particles" in snapshot:
             meshes["contacts"] = contact_mesh(particles, snapshot)
         if any(name.startswith("walls/") for name in snapshot):
             meshes["walls"] = wall_mesh(snapshot)
+        if len(snapshot.get("joints/ends", ())):
+            meshes["joints"] = joint_mesh(snapshot)
         if "continuum/position" in particles:
             meshes["continuum"] = continuum_mesh(particles, snapshot)
         return meshes

@@ -44,6 +44,11 @@ if "walls" in files:
     walls.DiffuseColor = [0.0, 0.0, 0.0]
     walls.LineWidth = 2.0
 
+if "joints" in files:
+    joints = Show(OpenDataFile(str(files["joints"])), view)
+    ColorBy(joints, ("CELLS", "slip"))
+    joints.LineWidth = 3.0
+
 if "continuum" in files:
     cells = Show(OpenDataFile(str(files["continuum"])), view)
     cells.SetRepresentationType("Surface")
@@ -122,6 +127,19 @@ def wall_mesh(snapshot: Arrays) -> meshio.Mesh:
     number = np.repeat(np.arange(len(walls), dtype=np.int32), counts - 1)
     lines = np.stack([first, first + 1], axis=1).astype(np.int32)
     return meshio.Mesh(in_space(np.concatenate(walls)), [("line", lines)], cell_data={"wall": [number]})
+
+
+def joint_mesh(snapshot: Arrays) -> meshio.Mesh:
+    """The segments of joints of one snapshot as lines, moved with the disks on their left."""
+    import meshio
+
+    places = snapshot["joints/ends"].reshape(-1, 2, 2)
+    moved = snapshot["displacement"][snapshot["joints/particles"][:, 0], None, :2]
+    lines = np.arange(2 * len(places), dtype=np.int32).reshape(-1, 2)
+    names = ("joint", "slip", "opening", "pressure", "shear", "state")
+    data = {name: snapshot[f"joints/{name}"] for name in names}
+    cells = {name: [values] for name, values in shown(data).items()}
+    return meshio.Mesh(in_space((places + moved).reshape(-1, 2)), [("line", lines)], cell_data=cells)
 
 
 def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:

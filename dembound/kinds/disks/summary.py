@@ -21,7 +21,7 @@ from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.watches import FarDisks, Turns, far_warnings, turn_warnings
 from dembound.kinds.disks.debris import debris_in_words, rest_warnings
 from dembound.kinds.disks.ground import describe_layers, packing_quantities
-from dembound.kinds.disks.joints import describe_joints, joint_warnings
+from dembound.kinds.disks.joints import describe_joints, first_events, joint_warnings
 from dembound.motion.part import MANY
 from dembound.motion.trackers import Run
 from dembound.results.reader import cracks_until, laws_in_words, open_record
@@ -62,6 +62,7 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     elif summary.get("joints"):
         facts += _broken(summary["cracks"], static, "")
     facts += debris_in_words(summary.get("debris"))
+    facts += first_events(summary.get("joints", {}))
     if (found := summary["load_factor"]) is not None:
         facts.append(load_factor_in_words(found))
     return facts

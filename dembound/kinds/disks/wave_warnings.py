@@ -158,7 +158,7 @@ def _travel_time(scene: DiskScene) -> float:
             times.append(float(scene.size[axis]) / max(fastest))
             continue
         _, bottom, _, top = scene.case.box
-        times.append(float(sum(-np.diff([top, *scene.case.beside(side).joints, bottom]) / fastest)))
+        times.append(float(sum(-np.diff([top, *scene.case.beside(side).layer_planes, bottom]) / fastest)))
     return max(times)
 
 

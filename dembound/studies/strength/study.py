@@ -111,6 +111,9 @@ T = TypeVar("T", bound=Table)
 STRENGTHS = ("fric", "rr_fric", "ten", "coh", "pb_ten", "pb_coh", "pb_fa")
 """Keys of [material], layers, joints and groups that are strengths."""
 
+ANGLES = ("pb_fa", "dilation")
+"""Keys of angles whose tangents are divided: of friction, and of dilation, which must stay below it."""
+
 
 def weaker(case: DiskCase, factor: float) -> DiskCase:
     """The case with all strengths, of [material], layers, joints and groups, divided by a factor."""
@@ -118,8 +121,8 @@ def weaker(case: DiskCase, factor: float) -> DiskCase:
     def divided(table: T) -> T:
         given = {key: getattr(table, key, None) for key in STRENGTHS}
         changes = {key: value / factor for key, value in given.items() if value}
-        if angle := given["pb_fa"]:
-            changes["pb_fa"] = degrees(atan(tan(radians(angle)) / factor))
+        angles = {key: getattr(table, key, None) for key in ANGLES}
+        changes |= {key: degrees(atan(tan(radians(angle)) / factor)) for key, angle in angles.items() if angle}
         return table.model_copy(update=changes)
 
     layers, joints, groups = (

@@ -8,7 +8,7 @@ from small_cases import GRAINS, PUSHED
 from dembound.disks.faces.springs import filling_springs
 from dembound.disks.faces.tie import JointTie
 from dembound.disks.scene import build
-from dembound.kernels.joints import PAIRS
+from dembound.kernels.joint_notes import PAIRS
 from dembound.kinds import loads
 
 LINE = [[-1.0, 0.8], [11.0, 1.6]]

@@ -188,13 +188,13 @@ def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them
     scene = build(small(COLUMN))
     larger = coarser(scene.case, scene, 1e-4, 0.6).case
     stretch = larger.size[1] / 12.5
-    assert larger.joints == pytest.approx([8.5 * stretch, 4.0 * stretch])
+    assert larger.layer_planes == pytest.approx([8.5 * stretch, 4.0 * stretch])
     for own, made in zip(materials_in(scene.ground), materials_in(build(larger).ground), strict=True):
         assert made.density == own.density
         np.testing.assert_allclose(made.wave_speeds(1), own.wave_speeds(1), rtol=1e-3)  # P and S are not quite apart
     # layers of whole cells of the largest disks
     thin = small(COLUMN, changes={"layer.sand.thickness": 0.75, "run.duration": 0.01})
-    assert coarser(thin, build(thin), 1e-4, 0.3).case.joints[0] == pytest.approx(8.5)
+    assert coarser(thin, build(thin), 1e-4, 0.3).case.layer_planes[0] == pytest.approx(8.5)
 
 
 TIME = np.linspace(0.0, 1.0, 21)

@@ -27,6 +27,11 @@ def test_a_joint_from_one_free_side_to_another_is_right():
             "joint[1, fault].points: turn by 56.3° at once, must turn by at most 10°",
         ),
         ({"ten": 1e6}, "joint[1, fault].ten: needs fric, the friction that is left once the joint has failed"),
+        (
+            {"fric": 0.3, "dilation": 17.0},
+            "joint[1, fault].dilation: is 17, must be below the angle of fric, 16.7 (degrees)",
+        ),
+        ({"fric": 0.3, "dilation_end": 0.1}, "joint[1, fault].dilation_end: needs dilation"),
         ({"kn": 0.0}, "joint[1, fault].kn: is 0.0, must be greater than 0"),
         ({"points": [[3.0, 5.0], [6.0, 7.0]]}, "joint[1, fault].points: a segment has no part in the disks, in"),
     ],
@@ -36,19 +41,11 @@ def test_one_joint(changes, said):
     assert line.startswith(said)
 
 
-@pytest.mark.parametrize(
-    ("points", "said"),
-    [
-        ([[3.0, 3.0], [6.0, -1.0]], "joint[2, other].points: crosses joint[1, fault]; must be three diameters"),
-        (
-            [[4.0, -1.0], [7.0, 3.0]],
-            "joint[2, other].points: comes within 0.8 m of joint[1, fault]; must be three diameters",
-        ),
-    ],
-)
-def test_two_joints(points, said):
-    (line,) = problems_of(more=[JOINT | {"name": "other", "points": points}])
-    assert line.startswith(said)
+def test_a_joint_that_runs_beside_another():
+    (line,) = problems_of(more=[JOINT | {"name": "other", "points": [[4.0, -1.0], [7.0, 3.0]]}])
+    assert line.startswith(
+        "joint[2, other].points: comes within three diameters of the disks, 1.5 m, of joint[1, fault]"
+    )
 
 
 def test_two_of_one_name():

@@ -103,7 +103,7 @@ def test_a_layer_takes_from_the_material_what_it_does_not_give() -> None:
     assert clay.given() == {"density": 2500.0, "s_wave_speed": 200.0, "contact_share": 0.3}
     assert sand.given() == case.material.given() | {"density": 2000.0, "kratio": 2.0}
     assert rock.given() == {"density": 2500.0, "emod": 1e9, "pb_emod": 2e9}
-    assert (case.joints, case.layer_names) == ((3.5, 2.0), ("clay", "2", "rock"))
+    assert (case.layer_planes, case.layer_names) == ((3.5, 2.0), ("clay", "2", "rock"))
 
 
 def test_a_layer_with_targets_takes_no_stiffness_from_the_material() -> None:

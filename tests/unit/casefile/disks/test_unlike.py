@@ -28,13 +28,13 @@ def ground(**changes: object) -> Case:
 
 def test_a_side_has_its_own_layers_and_the_common_ones() -> None:
     case = ground()
-    assert case.joints == (11.0, 8.0)
+    assert case.layer_planes == (11.0, 8.0)
     assert case.column_sides == ("left", "right", "bottom")
     assert case.middle == 12.0
     for side, joint, speed in (("left", 8.0, 600.0), ("right", 11.0, 800.0)):
         own = case.beside(side)
         assert not own.is_unlike
-        assert own.joints == (joint,)
+        assert own.layer_planes == (joint,)
         assert [each.p_wave_speed for each in own.materials] == [speed, 1000.0]
         assert own.beside("left") is own
         assert own.layer_names == ("1", "rock")

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 import tomli_w
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from small_cases import GRAINS
 
-from dembound.disks.faces.found import in_series, numbers_beside
+from dembound.disks.faces.found import in_series, merged, numbers_beside
 from dembound.disks.faces.springs import filling_springs
 from dembound.disks.scene import build
 from dembound.errors import CaseError
@@ -138,3 +140,38 @@ def test_a_joint_outside_of_the_ground_is_a_mistake(points):
     air = [{"name": "air", "type": "rectangle", "corners": [-1.0, 3.0, 11.0, 6.0]}]
     with pytest.raises(CaseError, match=r"joint\[1, joint\].points: has no disks on both sides"):
         scene_with(points, LATTICE | {"boundary": {"left": {"type": "viscous"}}, "hole": air})
+
+
+@pytest.mark.parametrize("tables", [LATTICE, GRAINS | {"boundary": {}, "wave": {}, "monitor": []}])
+def test_two_joints_that_cross_cut_the_ground_into_four(tables):
+    keys = {"kn": 1e10, "ks": 1e10, "fric": 0.5}
+    wide, high = tables["packing"]["size"]
+    level, at = 0.5 * high, 0.5 * wide
+    first = keys | {"name": "first", "points": [[-1.0, level], [wide + 1.0, level]]}
+    second = keys | {"name": "second", "points": [[at - 0.5 * high, -0.5], [at + 0.5 * high, high + 0.5]]}
+    scene = build(loads(tomli_w.dumps(tables | {"joint": [first, second]})))
+    assert [each.joint.name for each in scene.faces] == ["first", "second_1", "second_2"]
+    _, piece = connected_components(
+        coo_matrix((np.ones(len(scene.assembly.pairs)), scene.assembly.pairs.T), shape=(scene.count,) * 2)
+    )
+    sizes = np.sort(np.bincount(piece))
+    assert sizes[-4] > 0.1 * scene.count  # besides single loose disks
+    assert sizes[:-4].sum() < 0.02 * scene.count
+    # both sides of the parts of the second have faces up to the first
+    meets = np.array([at - 0.5 * high + (level + 0.5) * high / (high + 1.0), level])
+    for faces, end in zip(scene.faces[1:], (1, 0), strict=True):
+        for own in (slice(0, faces.split), slice(faces.split, None)):
+            assert np.abs(faces.ends[own, end] - meets).max(axis=1).min() < 1e-9
+            overlaps = np.sort(np.sum(faces.ends[own] * faces.along[0], axis=2), axis=0)
+            np.testing.assert_allclose(overlaps[1:, 0], overlaps[:-1, 1], atol=1e-9)
+    # disks on opposite sides of either joint never touch, also those that are beside both
+    beside = numbers_beside(scene.faces)
+    assert beside.shape[1] == 2
+    (joint,) = merged(scene.faces)
+    assert len(joint.joints) == 3
+    np.testing.assert_allclose(joint.length, sum(each.length for each in scene.faces))
+    for number, each in enumerate(scene.faces):
+        np.testing.assert_array_equal(np.sort(joint.disk[joint.part == number]), np.sort(each.disk))
+        left, right = (np.flatnonzero(each.side == way) for way in (1, -1))
+        assert (beside[left] == number + 1).any(axis=1).all()
+        assert (beside[right] == -number - 1).any(axis=1).all()

@@ -26,7 +26,8 @@ def test_what_a_joint_is_and_has_done():
     simulation = Simulation(scene, 3e-4)
     simulation.run(60)
     found = json.loads(json.dumps(describe_joints(simulation), allow_nan=False))
-    assert found["fault"].keys() == {"overlap", "pressure", "shear", "slip", "closed", "turn", "position"}
+    means = {"overlap", "pressure", "shear", "slip", "opening", "closed", "sliding"}
+    assert found["fault"].keys() == means | {"slides_from", "opens_from", "turn", "position"}
     np.testing.assert_allclose(found["fault"]["overlap"], 2.5, rtol=1e-3)
     assert not [*joint_warnings(found)]
     (line,) = joint_warnings({"fault": found["fault"] | {"turn": 0.2}})
