@@ -60,9 +60,15 @@ class Faces:
         number[kept] = begin + np.arange(len(kept))
         left = self.left_of(kept)
         side = np.concatenate([np.zeros(begin, np.int8), self.side[kept]])
-        each = (values[left] for values in (number[self.disk], self.ends, self.along))
-        split, removed = int(np.count_nonzero(left[: self.split])), self.removed[:, left]
-        return Faces(self.joint, split, *each, side, removed, self.cut, self.ended_at)
+        return replace(
+            self,
+            split=int(np.count_nonzero(left[: self.split])),
+            disk=number[self.disk[left]],
+            ends=self.ends[left],
+            along=self.along[left],
+            side=side,
+            removed=self.removed[:, left],
+        )
 
     def left_of(self, kept: np.ndarray) -> np.ndarray:
         """Whether each face (m,) is that of a disk among those kept (k,)."""

@@ -219,7 +219,7 @@ def states_among(
     states: Arrays, before: Sequence[Faces], after: Sequence[Faces], kept: np.ndarray
 ) -> dict[str, np.ndarray]:
     """The arrays of joints (`states_of`) of which only the faces of disks kept (k,) are left after an excavation."""
-    of_name, found = {each.joint.name: each for each in before}, {}
+    of_name, found = {each.joint.name: each for each in before}, dict[str, np.ndarray]()
     for faces in after:
         owner = f"joint_{faces.joint.name}"
         saved, left = arrays_of_owner(states, owner), of_name[faces.joint.name].left_of(kept)
