@@ -73,9 +73,16 @@ class Faces:
         number[kept] = begin + np.arange(len(kept))
         left = self.left_of(kept)
         side = np.concatenate([np.zeros(begin, np.int8), self.side[kept]])
-        own = {name: getattr(self, name)[left] for name in ("part", "ends", "along")}
-        own |= {"split": int(np.count_nonzero(left[: self.split])), "disk": number[self.disk][left], "side": side}
-        return replace(self, **own, removed=self.removed[:, left])
+        return replace(
+            self,
+            part=self.part[left],
+            split=int(np.count_nonzero(left[: self.split])),
+            disk=number[self.disk[left]],
+            ends=self.ends[left],
+            along=self.along[left],
+            side=side,
+            removed=self.removed[:, left],
+        )
 
     def left_of(self, kept: np.ndarray) -> np.ndarray:
         """Whether each face (m,) is that of a disk among those kept (k,)."""
