@@ -1,6 +1,6 @@
 """Angles at which loose disks shear and stand, by friction and rolling resistance, and how still piles are.
 
-    python benchmarks/rolling.py [shear] [piles]
+    python benchmarks/rolling.py [shear] [piles] [--seeds 1 2]
 
 `shear`: disks between a fixed base and a platen under a pressure, periodic sideways, which shears them at an inertial
 number of 0.005; angle of the mean traction on the base from a shear of 0.7 on. `piles`: a column on a rough floor,
@@ -17,13 +17,12 @@ from typing import Any
 
 import numpy as np
 import tomli_w
+from timing import small_option
 
 import dembound
 
 ROLLING: tuple[float | None, ...] = (0.0, 0.4, 1.0, 1.5, None)
 """Values of rr_fric; None: rotation is held."""
-
-SEEDS = (1, 2)
 
 LOOSE = {"density": 2000.0, "law": "linearpbond", "emod": 2e7, "pb_emod": 0.0, "kratio": 2.0, "fric": 0.5}
 RADIUS, PRESSURE, GRAVITY = 0.1, 1e5, 9.81
@@ -101,11 +100,14 @@ def slope_of(place: np.ndarray) -> float:
 def main() -> None:
     """Print a table of each."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="PART")
+    parser.add_argument("parts", nargs="*", metavar="PART", default=["shear", "piles"])
+    parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2])
+    small_option(parser, parts=["shear"], seeds=[1])
+    asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for part, rolling in itertools.product(parser.parse_args().parts or ("shear", "piles"), ROLLING):
+        for part, rolling in itertools.product(asked.parts, ROLLING):
             name = "locked" if rolling is None else f"rr_fric {rolling:g}"
-            rows = [(shear_angle if part == "shear" else pile)(rolling, seed, folder) for seed in SEEDS]
+            rows = [(shear_angle if part == "shear" else pile)(rolling, seed, folder) for seed in asked.seeds]
             print(f"{part} {name}:", "; ".join(" ".join(f"{value:.3g}" for value in row) for row in rows), flush=True)
 
 
