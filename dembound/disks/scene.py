@@ -30,6 +30,7 @@ from dembound.disks.columns import (
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.faces.found import with_joints
+from dembound.disks.faces.series import in_series
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.layered import LayeredGround, layered
@@ -236,7 +237,9 @@ def _scene(
         edges = edges_beside_columns(assembly, seams, edges)
     assembly, seams = with_half_contacts(case, ground.brick, assembly, seams, edges)
     count, surface = len(assembly.radii), case.surface
+    whole = assembly
     assembly, faces = with_joints(case, ground, assembly, columns_end(seams))
+    faces = tuple(in_series(each, ground, whole) for each in faces)
     assembly, seams = with_layers(ground, assembly, seams)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(

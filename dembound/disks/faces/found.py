@@ -34,6 +34,8 @@ class Faces:
     ends : (m, 2, 2) m, ends of each face at the start. along : (m, 2) unit vector along the line.
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
     removed : (2,) Pa/m, normal and shear stiffness per area of the contacts that it replaces. cut : number of these.
+    rock : (2,) m/Pa, compliance of the rock that the faces stand for, beside that of the joint; whole : (2,) Pa/m,
+    normal and shear stiffness of the joint as measured in its packing, nan where it was not; see series.py.
     """
 
     joint: Joint
@@ -44,6 +46,8 @@ class Faces:
     side: np.ndarray
     removed: np.ndarray
     cut: int
+    rock: np.ndarray
+    whole: np.ndarray
 
     @property
     def length(self) -> float:
@@ -51,10 +55,14 @@ class Faces:
         return float(np.hypot(*(self.ends[: self.split, 1] - self.ends[: self.split, 0]).T).sum())
 
     @property
+    def asked(self) -> np.ndarray:
+        """Normal and shear stiffness (2,) Pa/m that the joint is to have."""
+        return np.array([self.joint.kn, self.joint.ks])
+
+    @property
     def stiffness(self) -> np.ndarray:
-        """Normal and shear stiffness (2,) Pa/m of the faces: with the removed contacts in series, those asked for."""
-        asked = np.array([self.joint.kn, self.joint.ks])
-        found: np.ndarray = asked * self.removed / (asked + self.removed)
+        """Normal and shear stiffness (2,) Pa/m of the faces: with that of the rock in series, those asked for."""
+        found: np.ndarray = 1.0 / (1.0 / self.asked + self.rock)
         return found
 
 
@@ -82,9 +90,11 @@ def faces_of(joint: Joint, ground: PackedMaterial, assembly: Assembly, body: sli
         found += line.faces(own, side, assembly.positions, assembly.radii)
         split = sum(len(each[0]) for each in found) if way == 1 else split
     disk, ends, along = (np.concatenate(columns) for columns in zip(*found, strict=True))
-    faces = Faces(joint, split, disk, ends, along, side.astype(np.int8), np.zeros(2), int(crossing.sum()))
+    sides, unknown = side.astype(np.int8), np.full(2, np.nan)
+    faces = Faces(joint, split, disk, ends, along, sides, np.zeros(2), int(crossing.sum()), np.zeros(2), unknown)
     if 0 < split < len(disk):
-        faces = replace(faces, removed=_stiffness(faces, ground, assembly, crossing))
+        removed = _stiffness(faces, ground, assembly, crossing)
+        faces = replace(faces, removed=removed, rock=1.0 / removed)
     return faces
 
 
