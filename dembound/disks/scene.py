@@ -29,7 +29,8 @@ from dembound.disks.columns import (
 )
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
-from dembound.disks.faces.found import Faces, with_joints
+from dembound.disks.faces.cut import with_joints
+from dembound.disks.faces.found import Faces
 from dembound.disks.material.case_material import make_packed_material, nominal_moduli
 from dembound.disks.material.confined import confined
 from dembound.disks.material.grouped import GroupedGround

@@ -107,9 +107,11 @@ def _push_pair(joint, k, u, v):
     pairs, lost, now = joint.pairs, joint.lost, joint.now
     f, g = U(pairs.first[k]), U(pairs.second[k])
     i, j = U(joint.disk[f]), U(joint.disk[g])
-    tx, ty = joint.along[f, U(0)] + joint.along[g, U(0)], joint.along[f, U(1)] + joint.along[g, U(1)]
-    size = np.sqrt(tx * tx + ty * ty)
-    tx, ty = tx / size, ty / size
+    tx, ty = joint.along[f, U(0)], joint.along[f, U(1)]
+    if tx != joint.along[g, U(0)] or ty != joint.along[g, U(1)]:
+        tx, ty = tx + joint.along[g, U(0)], ty + joint.along[g, U(1)]
+        size = np.sqrt(tx * tx + ty * ty)
+        tx, ty = tx / size, ty / size
     ax, ay = now[f, U(0)], now[f, U(1)]
     bx, by = now[f, U(2)] - ax, now[f, U(3)] - ay
     cx, cy = now[g, U(0)] - ax, now[g, U(1)] - ay
@@ -241,15 +243,22 @@ def list_faces(joint, u):
 
 
 @njit(**FAST)
-def _is_old(joint, u):
-    """Whether a face has moved by half of the margin since pairs were listed."""
-    least = (0.5 * joint.law.margin) ** 2
-    for f in range(joint.disk.size):
+def _follow_disks(joint, u):
+    """Fill joint.now, clear joint.force; whether a face has moved by half of the margin since pairs were listed."""
+    least, furthest = (0.5 * joint.law.margin) ** 2, 0.0
+    for face in range(joint.disk.size):
+        f = U(face)
         i = U(joint.disk[f])
-        x, y = u[U(0), i] - joint.listed[f, 0], u[U(1), i] - joint.listed[f, 1]
-        if x * x + y * y > least:
-            return True
-    return False
+        ux, uy, turn = u[U(0), i], u[U(1), i], u[U(2), i]
+        x, y = ux - joint.listed[f, 0], uy - joint.listed[f, 1]
+        furthest = max(furthest, x * x + y * y)
+        for end in range(2):
+            x, y = joint.ends[f, U(2 * end)], joint.ends[f, U(2 * end + 1)]
+            joint.now[f, U(2 * end)] = x + ux - turn * (y - joint.centre[f, 1])
+            joint.now[f, U(2 * end + 1)] = y + uy + turn * (x - joint.centre[f, 0])
+        for c in range(3):
+            joint.force[f, c] = 0.0
+    return furthest > least
 
 
 @apart()
@@ -259,16 +268,10 @@ def push_faces(joint, u, v):
 
     v : (3, n) velocities half a step before; zero for disks at rest.
     """
-    for f in range(joint.disk.size):
-        for c in range(3):
-            joint.force[f, c] = 0.0
     for c in range(3):
         joint.lost[c] = 0.0
-    if _is_old(joint, u):
+    if _follow_disks(joint, u):
         list_faces(joint, u)
-    for f in range(joint.disk.size):
-        joint.now[f, 0], joint.now[f, 1] = _end(joint, u, f, 0)
-        joint.now[f, 2], joint.now[f, 3] = _end(joint, u, f, 1)
     for k in range(joint.counts[PAIRS]):
         _push_pair(joint, U(k), u, v)
     note_means(joint)

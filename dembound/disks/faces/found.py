@@ -7,12 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.joint import Joint, ends_on, joint_ends
-from dembound.casefile.messages import numbered
+from dembound.casefile.disks.joint import Joint, ends_on
 from dembound.disks.faces.line import Line
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
 
@@ -44,6 +41,8 @@ class Faces:
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
     removed : (2, m) Pa/m, normal and shear stiffness per area of the contacts that it replaces, in the ground of each
     face. cut : number of these. ended_at : sides before which it ends, as ground goes on beyond them.
+    rock : (2, m) m/Pa, compliance of the rock that the faces stand for, beside that of the joint, and whole : (2,) Pa/m,
+    normal and shear stiffness of the joint, as measured in its packing, see series.py; None where they were not.
     """
 
     joints: tuple[Joint, ...]
@@ -56,6 +55,8 @@ class Faces:
     removed: np.ndarray
     cut: int
     ended_at: tuple[str, ...] = ()
+    rock: np.ndarray | None = None
+    whole: np.ndarray | None = None
 
     @property
     def joint(self) -> Joint:
@@ -82,6 +83,7 @@ class Faces:
             along=self.along[left],
             side=side,
             removed=self.removed[:, left],
+            rock=None if self.rock is None else self.rock[:, left],
         )
 
     def left_of(self, kept: np.ndarray) -> np.ndarray:
@@ -94,11 +96,26 @@ class Faces:
         return 0 < self.split < len(self.disk)
 
     @property
+    def asked(self) -> np.ndarray:
+        """Normal and shear stiffness (2,) Pa/m that the joint is to have."""
+        return np.array([self.joint.kn, self.joint.ks])
+
+    @property
     def stiffness(self) -> np.ndarray:
-        """Normal and shear stiffness (2, m) Pa/m of the faces: with removed contacts in series, those asked for."""
-        asked = np.array([[self.joint.kn], [self.joint.ks]])
+        """Normal and shear stiffness (2, m) Pa/m of the faces: with that of the rock in series, those asked for.
+
+        That of the rock is as measured, else that of the removed contacts.
+        """
+        asked = self.asked[:, None]
+        if self.rock is not None:
+            return np.asarray(1.0 / (1.0 / asked + self.rock))
         found: np.ndarray = asked * self.removed / (asked + self.removed)
         return found
+
+    @property
+    def compliance(self) -> np.ndarray:
+        """Compliance (2, m) m/Pa of the rock that the faces stand for."""
+        return np.asarray(1.0 / self.removed) if self.rock is None else self.rock
 
 
 def in_series(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -166,30 +183,6 @@ def _is_across(other: Faces, way: np.ndarray, assembly: Assembly, box: Box) -> n
     return across
 
 
-def with_joints(
-    case: DiskCase,
-    ground: PackedMaterial,
-    assembly: Assembly,
-    begin: int,
-    before: tuple[Sequence[Faces], np.ndarray] | None = None,
-) -> tuple[Assembly, tuple[Faces, ...]]:
-    """An assembly without the contacts that the joints of a case replace, and their faces.
-
-    begin : number of the first disk of the body, which follows those of columns. before : the faces before an
-    excavation, and the disks (k,) left of the body then; those that are left stay as they were.
-    """
-    faces = _found(case, ground, assembly, begin) if before is None else _left(*before, begin)
-    for each in faces:
-        assembly = _cut(assembly, each)
-    return assembly, faces
-
-
-def _cut(assembly: Assembly, faces: Faces) -> Assembly:
-    """An assembly without the contacts across a joint."""
-    kept = faces.side[assembly.pairs].prod(axis=1) >= 0
-    return replace(assembly, pairs=assembly.pairs[kept], contact_type=assembly.contact_type[kept])
-
-
 def alike(faces: Sequence[Faces]) -> list[list[Faces]]:
     """The joints of the same constants together, as those of a set, in the order of the first of each."""
     groups: dict[tuple[object, ...], list[Faces]] = {}
@@ -208,7 +201,7 @@ def _as_one(faces: Sequence[Faces]) -> Faces:
     if len(faces) == 1:
         return faces[0]
     order = [(each, slice(0, each.split)) for each in faces] + [(each, slice(each.split, None)) for each in faces]
-    number = {id(each): k for k, each in enumerate(faces)}
+    number, known = {id(each): k for k, each in enumerate(faces)}, [each for each in faces if each.whole is not None]
     return Faces(
         joints=tuple(each.joint for each in faces),
         part=np.concatenate([np.full(len(each.disk[own]), number[id(each)]) for each, own in order]),
@@ -220,49 +213,11 @@ def _as_one(faces: Sequence[Faces]) -> Faces:
         removed=np.concatenate([each.removed[:, own] for each, own in order], axis=1),
         cut=sum(each.cut for each in faces),
         ended_at=tuple(dict.fromkeys(side for each in faces for side in each.ended_at)),
+        rock=np.concatenate([each.compliance[:, own] for each, own in order], axis=1),
+        whole=None
+        if not known
+        else np.average([each.whole for each in known], axis=0, weights=[e.length for e in known]),
     )
-
-
-def _found(case: DiskCase, ground: PackedMaterial, assembly: Assembly, begin: int) -> tuple[Faces, ...]:
-    """The faces of all joints of a case, see `with_joints`; raises CaseError for joints without any."""
-    body, ends = slice(begin, len(assembly.radii)), joint_ends(case.boundary, case.intact, 2.0 * case.packing.radius)
-    found = list[Faces]()
-    for joint in case.joint:
-        found.append(faces_of(joint, ground, assembly, body, case.packing.box, ends, found))
-        assembly = _cut(assembly, found[-1])
-    faces = tuple(each for each in found if (each.has_two_sides and each.cut) or not each.joint.is_of_set)
-    if nowhere := [
-        place
-        for (place, _), each in zip(numbered("joint", case.joint), found, strict=True)
-        if not each.cut and not each.joint.is_of_set
-    ]:
-        beside = "of the ground that is not beside a side beyond which ground goes on" if ends else "of the ground"
-        raise CaseError(
-            [f"{place}.points: has no disks on both sides, must cross a part {beside}" for place in nowhere]
-        )
-    return faces if len(faces) == 1 else _with_means(faces, ground, assembly)
-
-
-def _with_means(faces: tuple[Faces, ...], ground: PackedMaterial, assembly: Assembly) -> tuple[Faces, ...]:
-    """Faces with the mean stiffness of the contacts that all joints of the same constants replace, by layer.
-
-    The contacts of one line are too few for a mean.
-    """
-    zones = {each.joint.name: ground.zone_of(assembly.positions[each.disk]) for each in faces}
-    found = {each.joint.name: each.removed.copy() for each in faces}
-    for group in alike(faces):
-        for zone in np.unique(np.concatenate([zones[each.joint.name] for each in group])):
-            there = [each for each in group if zone in zones[each.joint.name]]
-            own = [each.removed[:, zones[each.joint.name] == zone][:, 0] for each in there]
-            mean = np.average(own, axis=0, weights=[each.length for each in there])
-            for each in there:
-                found[each.joint.name][:, zones[each.joint.name] == zone] = mean[:, None]
-    return tuple(replace(each, removed=found[each.joint.name]) for each in faces)
-
-
-def _left(before: Sequence[Faces], kept: np.ndarray, begin: int) -> tuple[Faces, ...]:
-    """The faces that are left of joints, without joints of which one side is gone; see `Faces.among`."""
-    return tuple(each for each in (faces.among(kept, begin) for faces in before) if each.has_two_sides)
 
 
 def numbers_beside(faces: Sequence[Faces]) -> np.ndarray | None:

@@ -14,7 +14,11 @@ def filling_springs(faces: Sequence[Faces], positions: np.ndarray, slot: np.ndar
 
     positions : (n, 2) m of the disks; slot : (n,) of each.
     """
-    each = [_springs_of(one, positions, slot) for one in faces]
+    each = []
+    for one in faces:
+        disks, modes, lengths, (left, right) = springs_of(one, positions)
+        stiffness = in_series(one.stiffness[:, left], one.stiffness[:, right]).ravel()
+        each.append((slot[disks], modes, lengths * stiffness))
 
     def fill(u: np.ndarray, force: np.ndarray) -> None:
         for disks, modes, stiffness in each:
@@ -24,8 +28,11 @@ def filling_springs(faces: Sequence[Faces], positions: np.ndarray, slot: np.ndar
     return fill
 
 
-def _springs_of(faces: Faces, positions: np.ndarray, slot: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Slots (k, 2) of both disks of k springs, modes (k, 2, 3) that stretch them by 1 m or rad, stiffness (k,) N/m."""
+def springs_of(faces: Faces, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Both disks (k, 2) of k springs, modes (k, 2, 3) that stretch them by 1 m or rad, length (k,) m of their overlap.
+
+    The springs along the normal come before those along the line. And both faces (2, k/2) of each of these halves.
+    """
     left, right = np.arange(faces.split), np.arange(faces.split, len(faces.disk))
     along = faces.along[left, None] + faces.along[None, right]
     along /= np.sqrt(np.sum(along**2, axis=-1, keepdims=True))
@@ -44,5 +51,5 @@ def _springs_of(faces: Faces, positions: np.ndarray, slot: np.ndarray) -> tuple[
             arm = middle - positions[both[:, end]]
             modes[way, :, end, :2] = sign * own
             modes[way, :, end, 2] = sign * (arm[:, 0] * own[:, 1] - arm[:, 1] * own[:, 0])
-    stiffness = length * in_series(faces.stiffness[:, one], faces.stiffness[:, faces.split + other])
-    return np.tile(slot[both], (2, 1)), modes.reshape(-1, 2, 3), stiffness.ravel()
+    faces_of_pairs = np.stack([one, faces.split + other])
+    return np.tile(both, (2, 1)), modes.reshape(-1, 2, 3), np.tile(length, 2), faces_of_pairs

@@ -17,6 +17,9 @@ from dembound.words import Entries, with_unit
 TURNED = 0.1
 """Rotation (rad) of a disk beside a joint from which on it is warned of: its face has turned out of the line."""
 
+MEANT = 0.02
+"""Relative difference of the stiffness of a joint from that asked for that `check` tells."""
+
 
 def describe_joints(run: Run) -> dict[str, dict[str, Any]]:
     """What each joint of a run of disks has done, by name, see `docs/reference/results.md`; empty without joints."""
@@ -89,15 +92,18 @@ def _faces_fact(faces: Faces) -> str:
 
 
 def _stiffness_fact(faces: Faces) -> str:
-    """The stiffness asked for, and that of the faces."""
-    asked = faces.joint.kn, faces.joint.ks
-    each = [f"{name} {with_unit(one, 'Pa/m')}" for name, one in zip(("kn", "ks"), asked, strict=True)]
+    """The stiffness asked for, that of the faces, and that of the joint as a whole where it is not what was asked."""
+    asked = " and ".join(with_unit(one, "Pa/m") for one in faces.asked.tolist())
     own = [
         [with_unit(one, "Pa/m") for one in np.unique(values[[values.argmin(), values.argmax()]])]
         for values in faces.stiffness
     ]
     of_faces = " and ".join(" to ".join(one) for one in own)
-    return f"{', '.join(each)}, of the faces, with the contacts in series, {of_faces}"
+    said = f"kn and ks {asked}, of the faces, in series with the rock, {of_faces}"
+    if faces.whole is None or np.abs(faces.whole / faces.asked - 1.0).max() <= MEANT:
+        return said
+    whole = " and ".join(with_unit(one, "Pa/m") for one in faces.whole.tolist())
+    return f"{said}, which are not stiffer than the contacts: as a whole it has {whole}"
 
 
 def _strength_fact(faces: Faces) -> str:
