@@ -335,7 +335,7 @@ if __name__ == "__main__":
     parser.add_argument("--radius", type=float, default=0.05, help="mean radius of the disks, m")
     parser.add_argument("--picture", type=Path, help="file of the picture")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/column_collapse.json"))
-    small_option(parser, aspects=[0.5], radius=0.2)
+    small_option(parser, aspects=[1.0], radius=0.15)
     options = parser.parse_args()
     found = list(rows(options))
     columns = {"a": "{aspect:g}", "seed": "{seed}", "disks": "{disks:,}", "x99, m": "{x99:.3f}"}
