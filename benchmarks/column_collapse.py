@@ -323,7 +323,7 @@ def draw(found: Sequence[dict[str, Any]], path: Path) -> None:
     aspects = np.geomspace(0.4, 6.0, 50)
     right.plot(aspects, np.where(aspects < 2.3, 1.2 * aspects, 1.9 * aspects ** (2.0 / 3.0)), "k", label="Lube et al.")
     right.plot([row["aspect"] for row in found], [row["run_out"] for row in found], "o", label="x99")
-    right.set(xscale="log", yscale="log", xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
+    right.set(xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
     right.legend()
     figure.savefig(path, dpi=110)
 
