@@ -323,7 +323,7 @@ def draw(found: Sequence[dict[str, Any]], path: Path) -> None:
     aspects = np.geomspace(0.4, 6.0, 50)
     right.plot(aspects, np.where(aspects < 2.3, 1.2 * aspects, 1.9 * aspects ** (2.0 / 3.0)), "k", label="Lube et al.")
     right.plot([row["aspect"] for row in found], [row["run_out"] for row in found], "o", label="x99")
-    right.set(xscale="log", yscale="log", xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
+    right.set(xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
     right.legend()
     figure.savefig(path, dpi=110)
 
@@ -335,7 +335,7 @@ if __name__ == "__main__":
     parser.add_argument("--radius", type=float, default=0.05, help="mean radius of the disks, m")
     parser.add_argument("--picture", type=Path, help="file of the picture")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/column_collapse.json"))
-    small_option(parser, aspects=[0.5], radius=0.2)
+    small_option(parser, aspects=[1.0], radius=0.15)
     options = parser.parse_args()
     found = list(rows(options))
     columns = {"a": "{aspect:g}", "seed": "{seed}", "disks": "{disks:,}", "x99, m": "{x99:.3f}"}

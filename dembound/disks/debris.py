@@ -86,7 +86,7 @@ class Debris:
         self._places, self._mass = scene.assembly.positions[self.body], scene.mass[self.body]
         self._diameter, self._deep = scene.ground.brick.mean_diameter, far_below(scene)
         self._bonds, self._count = scene.bonds, scene.disk_count
-        self._area = np.pi * scene.assembly.radii**2 * scene.cell_fraction / scene.ground.brick.solid_fraction
+        self._area = np.pi * (scene.cell_fraction * scene.assembly.radii**2) / scene.ground.brick.solid_fraction
         self._breaks = np.isin(np.arange(scene.disk_count), scene.bonds)
         self._breaks[: scene.column_count] = False
         sides = (edge.nodes for side, edge in scene.sides.items() if not scene.case.side(side).is_free)

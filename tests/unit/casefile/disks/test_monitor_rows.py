@@ -79,7 +79,7 @@ from | -1.0 | .from: is -1, must be an x of the ground, from 0 to 30 (m)
 spacing | 1e-4 | .spacing: makes 300,000 monitors, must make 1,000 or less
 spacing | 100.0 | .spacing: leaves no place for a monitor; give another one, or other from and to
 spacing | None | .spacing: is missing; a row needs it
-along | None | .position: is missing; give it, or along
+along | None | .position: is missing; give it, along or points
 position | [1.0, 2.0] | .position: is not allowed together with along
 along | "ground" | .along: is "ground", must be "surface"
 """
