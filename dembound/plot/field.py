@@ -9,8 +9,9 @@ import h5py
 import numpy as np
 
 from dembound.holes import Hole
-from dembound.plot.disks import ContinuumCells, Window, read_continuum, read_holes
+from dembound.plot.disks import ContinuumCells, Window, read_continuum
 from dembound.plot.lines_of_ground import LayersOfSide, Segments, areas_in, foot_in, layers_in, segments_in
+from dembound.plot.outlines import read_holes
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import (
     laws_in_words,

@@ -9,7 +9,8 @@ import numpy as np
 
 from dembound.casefile.reader import parsed
 from dembound.errors import CaseError
-from dembound.plot.disks import GROUP, is_scattered, read_holes
+from dembound.plot.disks import GROUP, is_scattered
+from dembound.plot.outlines import read_holes
 from dembound.results.reader import text_of
 
 POINTS = 257

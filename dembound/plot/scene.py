@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.messages import counted
-from dembound.plot.disks import Window, draw_continuum, draw_field, draw_outlines
+from dembound.plot.disks import Window, draw_continuum, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks
 from dembound.plot.field_reader import read_field
 from dembound.plot.lines import (
@@ -28,6 +28,7 @@ from dembound.plot.lines import (
     mark_layers,
     mark_walls,
 )
+from dembound.plot.outlines import draw_outlines
 from dembound.plot.places import framed
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record

@@ -17,7 +17,7 @@ from dembound.disks.material.at_rest import AtRest, stressed
 from dembound.disks.material.constants import BondFactors, brick_constants, limits_of
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.kernels import contacts as kernel
-from dembound.kernels.contacts import REFERENCE, SHEAR, TENSION
+from dembound.kernels.contacts import INTACT, REFERENCE, SHEAR, TENSION
 from dembound.kernels.near import pairs_of
 from dembound.laws.law import AnyLimits, columns_of
 from dembound.motion.part import Cracks, joined
@@ -228,6 +228,15 @@ class ContactList(RenewedList):
         moved = displacement[:2, self.nodes].T
         pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
         self.note_cracks()
+
+    @property
+    def torn(self) -> np.ndarray:
+        """Whether each particle (m,) has lost all its bonds; not of those that had none, nor long ago."""
+        torn = np.zeros(len(self.assembly.radii), dtype=np.bool_)
+        state, pairs = self.of("state"), np.stack(self.pairs)
+        torn[pairs[:, (state == TENSION) | (state == SHEAR)]] = True
+        torn[pairs[:, state == INTACT]] = False
+        return torn
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since the last call."""

@@ -41,8 +41,8 @@ class Faces:
     side : (n,) 1 for disks of the scene that are on the left beside the joint for good, −1 on the right, 0 for others.
     removed : (2, m) Pa/m, normal and shear stiffness per area of the contacts that it replaces, in the ground of each
     face. cut : number of these. ended_at : sides before which it ends, as ground goes on beyond them.
-    rock : (2, m) m/Pa, compliance of the rock that the faces stand for, beside that of the joint, and whole : (2,) Pa/m,
-    normal and shear stiffness of the joint, as measured in its packing, see series.py; None where they were not.
+    rock : (2, m) m/Pa, compliance of the rock that the faces stand for, beside that of the joint, and whole : (2,)
+    Pa/m, normal and shear stiffness of the joint, as measured in its packing, see series.py; None where they were not.
     """
 
     joints: tuple[Joint, ...]
@@ -202,6 +202,7 @@ def _as_one(faces: Sequence[Faces]) -> Faces:
         return faces[0]
     order = [(each, slice(0, each.split)) for each in faces] + [(each, slice(each.split, None)) for each in faces]
     number, known = {id(each): k for k, each in enumerate(faces)}, [each for each in faces if each.whole is not None]
+    weights = [each.length for each in known]
     return Faces(
         joints=tuple(each.joint for each in faces),
         part=np.concatenate([np.full(len(each.disk[own]), number[id(each)]) for each, own in order]),
@@ -214,9 +215,7 @@ def _as_one(faces: Sequence[Faces]) -> Faces:
         cut=sum(each.cut for each in faces),
         ended_at=tuple(dict.fromkeys(side for each in faces for side in each.ended_at)),
         rock=np.concatenate([each.compliance[:, own] for each, own in order], axis=1),
-        whole=None
-        if not known
-        else np.average([each.whole for each in known], axis=0, weights=[e.length for e in known]),
+        whole=np.average([each.whole for each in known], axis=0, weights=weights) if known else None,
     )
 
 

@@ -20,7 +20,6 @@ from dembound.disks.stepping.side_watch import SideWatch
 from dembound.disks.stepping.walls import WallPart
 from dembound.disks.surroundings.jump import JumpTie
 from dembound.kernels.common import BROKE, LAW_ENDS
-from dembound.kernels.contacts import INTACT, SHEAR, TENSION
 from dembound.kernels.follower import turn_forces
 from dembound.motion.state import Arrays, State, arrays_of_owner
 
@@ -169,9 +168,7 @@ class DiskSystem(RecordedDisks):
             return
         displacement, body = state.displacement, self.contacts["body"]
         torn = np.zeros(displacement.shape[1], dtype=np.bool_)
-        broken, intact = (np.isin(body.of("state"), states) for states in ((TENSION, SHEAR), (INTACT,)))
-        for chosen, value in ((broken, True), (intact, False)):
-            torn[np.concatenate([particles[chosen] for particles in body.pairs]) + body.nodes.start] = value
+        torn[body.nodes] = body.torn
         ended = np.unique(np.concatenate([joint.loose(displacement, torn) for joint in self.joints]))
         for joint in self.joints:
             joint.end_faces(ended)

@@ -10,9 +10,9 @@ from small_cases import SURROUNDED, small
 from dembound.kinds.disks.kind import Disks
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
-from dembound.plot.disks import ABOVE_FIELD, ABOVE_FILLING, read_holes
 from dembound.plot.field import SHOWN_LAYER
 from dembound.plot.moving import MovingScene
+from dembound.plot.outlines import ABOVE_FIELD, ABOVE_FILLING, read_holes
 from dembound.plot.scene import plot_scene
 from dembound.results.recorder import Recorder
 
