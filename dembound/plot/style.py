@@ -48,6 +48,9 @@ FEWEST_NUMBERS = 3
 NUMBERED = ((1.0,), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0))
 """Sets of multiples of powers of ten as numbers of a logarithmic axis: the first with enough numbers is used."""
 
+LEGEND = 0.45
+"""Height (inches) of a legend of two rows, for which figures have room."""
+
 THINNEST = 1.5
 """Width (points) of a band below which the line within hides it."""
 
@@ -184,7 +187,8 @@ def open_point_style(index: int) -> dict[str, Any]:
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
     """Put one legend of all labels in the panels, each once, below everything else.
 
-    It has as many columns as fit the width of the figure, at most `columns`. Lines outside the axes, and bands thinner
+    It has as many columns as fit the width of the figure, at most `columns`; of more than two rows it makes the figure
+    higher. Lines outside the axes, and bands thinner
     than a line, have no entry.
     """
     handles: dict[str, Artist] = {}
@@ -196,7 +200,10 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
         return
     for count in range(columns, 0, -1):
         legend = figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=count)
-        if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
+        extent = legend.get_window_extent()
+        if count == 1 or extent.width <= figure.bbox.width:
+            width, height = figure.get_size_inches()
+            figure.set_size_inches(width, height + max(0.0, extent.height / figure.dpi - LEGEND))
             return
         legend.remove()
 

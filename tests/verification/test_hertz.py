@@ -5,10 +5,11 @@ import pytest
 from scipy.special import gamma
 from small_cases import small
 
+from dembound.disks.loose import RESERVE, reserve
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build, ground_of
 from dembound.disks.small_motion import small_motion
-from dembound.disks.stability import RESERVE, reserve, step_limit
+from dembound.disks.stability import step_limit
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.running import plan

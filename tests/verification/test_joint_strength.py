@@ -87,7 +87,7 @@ def test_dilation_under_fixed_volume(lab):
     """Pressure grows by k_n tan ψ per slip up to the end of dilation, and falls again as the joint slides back."""
     end, pressure, tangent = 0.02, 4e5, np.tan(np.radians(10.0))
     move, tie = halves(lab, {"fric": FRICTION, "dilation": 10.0, "dilation_end": end})
-    kn, ks = tie.faces.stiffness
+    kn, ks = tie.faces.stiffness[:, 0]
     shifts = np.linspace(0.0, 0.1, 401)
     push, rub = np.array([move(-pressure / kn, shift) for shift in shifts]).T
     # of stresses means over the overlap; slip is the shift less its elastic part

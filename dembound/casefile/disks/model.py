@@ -261,7 +261,7 @@ class DiskCase(Case):
     @property
     def walls_stop(self) -> float:
         """Time (s) from which all walls stand; infinite if one never does."""
-        ends = [min(self._stops(wall), wall.until or np.inf) for wall in self.wall if wall.moves]
+        ends = [min(self._stops(wall), wall.until or np.inf) for wall in self.wall if wall.is_driven]
         return max(ends, default=0.0)
 
     def _stops(self, wall: Wall) -> float:

@@ -74,7 +74,7 @@ def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling
 KEYS = """name title version particles contacts loose_disks_left_out time_step step_limit steps duration ended
 wall_time seconds layers has_history threads particle_steps_per_second memory_bytes packing load_factor far
 forces_at_rest boundaries turns joints monitors laws static cracks energy keys reduced not_reduced resumed sides
-warnings waves"""
+warnings waves debris"""
 
 
 def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:

@@ -19,7 +19,7 @@ def test_what_a_joint_is_and_has_done():
     ((name, text),) = joint_facts(scene)
     assert name == "joint fault"
     assert text.startswith(
-        "2.5 m, faces of 5 and 5 disks in place of 5 contacts; kn 10 GPa/m, ks 5 GPa/m, of the faces"
+        "2.5 m, faces of 5 and 5 disks in place of 5 contacts; kn and ks 10 GPa/m and 5 GPa/m, of the faces"
     )
     assert text.endswith("; friction 0.5, coh 200 kPa")
 
