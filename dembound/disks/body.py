@@ -220,7 +220,7 @@ class DiskBody(Scene):
     def lines(self) -> dict[str, dict[str, np.ndarray]]:
         """Points (p, 2) m by name of the "walls" that disks touch, and of "joints"."""
         walls = {wall.name: np.array(wall.line) for wall in self.case.wall}
-        return {"walls": walls, "joints": {joint.name: np.array(joint.points) for joint in self.case.joint}}
+        return {"walls": walls, "joints": {each.joint.name: np.array(each.joint.points) for each in self.faces}}
 
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once

@@ -257,6 +257,12 @@ class JointTie(Tie):
         self._bundle.counts[EVENTS] = 0
         return found
 
+    @property
+    def there(self) -> np.ndarray:
+        """Whether each face (m,) is still there, see `loose`."""
+        found: np.ndarray = (self._bundle.ends[:, :2] != self._bundle.ends[:, 2:]).any(axis=1)
+        return found
+
     def loose(self, displacement: np.ndarray, torn: np.ndarray) -> np.ndarray:
         """Disks (k,) with faces that are no longer parts of blocks along the joint.
 
@@ -271,7 +277,7 @@ class JointTie(Tie):
             (n,) bool, whether disks have lost all bonds.
         """
         faces, reach = self.faces, self._bundle.law.reach
-        there = np.flatnonzero((self._bundle.ends[:, :2] != self._bundle.ends[:, 2:]).any(axis=1))
+        there = np.flatnonzero(self.there)
         disk, is_left, part = faces.disk[there], there < faces.split, faces.part[there]
         loose = (np.abs(displacement[2, disk]) > TURNED) | torn[disk]
         place = np.sum((faces.ends[there].mean(axis=1) + displacement[:2, disk].T) * faces.along[there], axis=1)

@@ -148,13 +148,13 @@ class RecordedDisks(System):
 
     @cached_property
     def _joint_numbers(self) -> list[np.ndarray]:
-        """Numbers, in the order of the case, of the joints of each tie."""
-        numbers = {joint.name: number for number, joint in enumerate(self.scene.case.joint)}
+        """Numbers of the joints of each tie among those that have faces, in the order of the case."""
+        numbers = {name: number for number, name in enumerate(self.scene.lines["joints"])}
         return [np.array([numbers[joint.name] for joint in tie.faces.joints]) for tie in self.joints]
 
     def joint_samples(self, steps: np.ndarray) -> np.ndarray:
         """Means over joints (k, j, 6), see `JointTie.samples`."""
-        found = np.zeros((len(steps), len(self.scene.case.joint), 6))
+        found = np.zeros((len(steps), len(self.scene.lines["joints"]), 6))
         for tie, numbers in zip(self.joints, self._joint_numbers, strict=True):
             found[:, numbers] = tie.samples(steps)
         return found

@@ -26,12 +26,12 @@ def describe_joints(run: Run) -> dict[str, dict[str, Any]]:
     if not isinstance(run.system, DiskSystem):
         return {}
     ties = {joint.name: (tie, number) for tie in run.system.joints for number, joint in enumerate(tie.faces.joints)}
-    return {joint.name: _describe(*ties[joint.name], run) for joint in run.system.scene.case.joint}
+    return {name: _describe(*ties[name], run) for name in run.system.scene.lines["joints"]}
 
 
 def _describe(tie: JointTie, number: int, run: Run) -> dict[str, Any]:
     """Means over the length of overlaps of a joint at the last step, first events, the largest turn beside it."""
-    pairs, disks = tie.acting, tie.faces.disk[tie.faces.part == number]
+    pairs, disks = tie.acting, tie.faces.disk[(tie.faces.part == number) & tie.there]
     own = tie.faces.part[pairs.first] == number
     pairs = FacePairs(*(each[own] for each in pairs))
     length = float(pairs.length.sum())
@@ -44,8 +44,8 @@ def _describe(tie: JointTie, number: int, run: Run) -> dict[str, Any]:
         **{key: float(np.sum(pairs.length * each) / length) if length else None for key, each in means.items()},
         "slides_from": first[0],
         "opens_from": first[1],
-        "turn": float(turned.max()),
-        "position": run.scene.positions[disks[turned.argmax()]].tolist(),
+        "turn": float(turned.max(initial=0.0)),
+        "position": run.scene.positions[disks[turned.argmax()]].tolist() if len(disks) else None,
     }
 
 
@@ -66,7 +66,7 @@ def joint_warnings(found: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
             x, y = each["position"]
             yield (
                 f"joint.{name}: the disk at ({x:.4g}, {y:.4g}) m beside it has turned by {each['turn']:.3g} rad, and "
-                "its face with it, as if it were a part of a block: it has lost its bonds, or the block has turned"
+                "its face with it: the block that it is part of has turned"
             )
 
 
