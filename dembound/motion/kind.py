@@ -278,10 +278,7 @@ class Kind(ABC, Generic[C, S]):
         """Additional entries of a summary for this kind of body: plain JSON values, SI units."""
 
     def derived(self, scene: S, file: h5py.File) -> dict[str, tuple[np.ndarray, str]]:
-        """What follows from the snapshots and cracks of the open record of a run, by name: values and unit.
-
-        By default nothing.
-        """
+        """What follows from the snapshots and cracks of the open record of a run, by name: values and unit."""
         return {}
 
     @abstractmethod

@@ -64,6 +64,7 @@ SLOPE = {
 }
 
 
+@pytest.mark.slow
 def test_a_slope_stands_on_a_joint_that_dips_out_of_it(lab):
     scene = build(loads(tomli_w.dumps(SLOPE)))
     simulation = lab.simulation(scene, settle(scene).start)
@@ -75,7 +76,7 @@ def test_a_slope_stands_on_a_joint_that_dips_out_of_it(lab):
     assert np.abs(simulation.state.velocity).max() < 1e-8
 
 
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+@pytest.mark.parametrize("law", ["elastic", pytest.param("linearpbond", marks=pytest.mark.slow)])
 def test_what_an_excavation_leaves_rests_on_the_faces_that_are_left(lab, law):
     level = 3.0
     strength = {} if law == "elastic" else {"law": law, "fric": 0.5}

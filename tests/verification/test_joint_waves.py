@@ -53,6 +53,7 @@ def test_what_passes(lab, stiffness):
     np.testing.assert_allclose(np.abs(behind).max(), np.abs(expected).max(), rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_in_damped_ground_it_is_a_spring_too(lab):
     quality = {"quality_factor": 20.0}
     alone, step = passed(lab, 0.0, quality)

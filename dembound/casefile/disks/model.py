@@ -260,13 +260,8 @@ class DiskCase(Case):
 
     @property
     def walls_stop(self) -> float:
-        """Time (s) from which all walls stand; infinite if one never does."""
-        ends = [min(self._stops(wall), wall.until or np.inf) for wall in self.wall if wall.is_driven]
-        return max(ends, default=0.0)
-
-    def _stops(self, wall: Wall) -> float:
-        """Time (s) at which the velocity of a moving wall ends."""
-        return max((self.wave[name].duration() for name in wall.waves.values()), default=np.inf)
+        """Time (s) from which no wall moves by itself; infinite if one does to the end."""
+        return max((wall.stops(self.wave) for wall in self.wall if wall.is_driven), default=0.0)
 
     @cached_property
     def intact(self) -> dict[str, int]:

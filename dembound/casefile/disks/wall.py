@@ -1,5 +1,6 @@
 """The ``[[wall]]`` tables: rigid lines that disks touch."""
 
+import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any, Literal
@@ -12,6 +13,7 @@ from dembound.casefile.messages import counted, numbered
 from dembound.casefile.types import LAWS
 from dembound.holes.polygon import Points
 from dembound.table import FileName, Table, quantity
+from dembound.waves import Wave
 
 MOST_POINTS = 100_000
 """Largest number of points of a wall."""
@@ -139,6 +141,11 @@ class Wall(Table):
     def is_driven(self) -> bool:
         """Whether it moves by a velocity or waves of its own."""
         return self.velocity is not None or bool(self.waves)
+
+    def stops(self, waves: Mapping[str, Wave]) -> float:
+        """Time (s) from which it does not move by velocity or waves, those of the case by name; infinite if never."""
+        ends = [waves[name].duration() for name in self.waves.values()]
+        return min(max(ends, default=math.inf), math.inf if self.until is None else self.until)
 
     @property
     def place(self) -> tuple[float, float]:

@@ -32,11 +32,9 @@ class DiskSystem(RecordedDisks):
 
     Parameters
     ----------
-    scene : the scene to be moved.
-    time_step : Δt in s.
-    start : a settled body; the forces on its particles are balanced from then on, unless it is `settling`
-    again. None: as built, with nothing balanced. settling : whether this is a static stage, in which forces are not
-    balanced. load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
+    scene : the scene to be moved. time_step : Δt in s. start : a settled body; the forces on its particles are balanced
+    from then on, unless it is `settling` again. None: as built, with nothing balanced. settling : whether this is a
+    static stage, in which forces are not balanced. load : (3, n) steady forces and moments (N, N·m); None: the scene's.
 
     Attributes
     ----------
@@ -167,8 +165,7 @@ class DiskSystem(RecordedDisks):
         if not self.joints:
             return
         displacement, body = state.displacement, self.contacts["body"]
-        torn = np.zeros(displacement.shape[1], dtype=np.bool_)
-        torn[body.nodes] = body.torn
+        torn = np.concatenate([np.zeros(body.nodes.start, dtype=np.bool_), body.torn])
         ended = np.unique(np.concatenate([joint.loose(displacement, torn) for joint in self.joints]))
         for joint in self.joints:
             joint.end_faces(ended)
