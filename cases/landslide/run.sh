@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A landslide between artificial sides, from its earthquake to its deposit, and the same ground in a rigid box whose base
 # and sides shake with the record, as in most studies with particles: what the artificial boundaries change.
-# Runs, a picture, a movie and a page; some five minutes on two cores.
+# Runs, a picture, a movie and a page; some seven minutes of one core.
 #
 #   cases/landslide/run.sh [RESULTS]      (default: results/landslide)
 set -euo pipefail

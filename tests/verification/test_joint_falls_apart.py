@@ -43,11 +43,12 @@ def test_a_block_falls_apart_on_it(lab):
     entry = ledger.entries[-1]
     place = scene.positions + simulation.state.displacement[:2].T
     # without the end of faces the block gains 5e4 J/m until 0.6 s, and the run stops
-    assert abs(entry.error) < 1e-3 * entry.supplied  # bonds cut by hand take their energy with them
-    assert abs(entry.closing) < 0.02 * entry.supplied
+    assert abs(entry.error) < 1e-4 * entry.supplied  # measured 2e-5: bonds cut by hand take their energy with them
+    # measured 8e-3: faces end with their springs strained, and contacts open and close
+    assert abs(entry.closing) < 0.01 * entry.supplied
     bundle = simulation.system.joints[0].saved_arrays()
     assert (bundle["ends"][:, :2] == bundle["ends"][:, 2:]).any()
-    # the disks lie on the ground below; some sink by up to a diameter into those in whose way they lay
+    # the disks lie on the ground below; some, measured 6 %, sink by up to a diameter into those in whose way they lay
     assert place[above, 0].mean() > scene.positions[above, 0].mean() + 0.3
     assert np.mean(place[above, 1] < FLOOR - 0.5 * lab.diameter) < 0.1
     assert place[above, 1].min() > FLOOR - 1.5 * lab.diameter
