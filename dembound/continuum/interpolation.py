@@ -71,10 +71,7 @@ def slopes(mesh: Mesh, points: np.ndarray) -> np.ndarray:
     """Derivatives (2, k, N²) along x and along y, 1/m, of the weights of `interpolation`."""
     chosen, local = located(mesh, points)
     (x, x_slope), (y, y_slope) = (
-        (
-            mesh.rule.shape(local[:, a]),
-            mesh.rule.slope(local[:, a]) * (2.0 / mesh.element_sizes[chosen, a])[:, None],
-        )
+        (mesh.rule.shape(local[:, a]), mesh.rule.slope(local[:, a]) * (2.0 / mesh.element_sizes[chosen, a])[:, None])
         for a in (0, 1)
     )
     each = y[:, :, None] * x_slope[:, None, :], y_slope[:, :, None] * x[:, None, :]

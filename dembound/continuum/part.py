@@ -205,10 +205,7 @@ class GridPart(Part):
         """Raise ValueError for nodes that cannot be supported."""
         mesh = self.body.mesh
         inside = mesh.nodes[mesh.absorbs.any(axis=1), 1:-1, 1:-1]
-        for nodes, where in (
-            (inside, "inside an element that absorbs"),
-            (np.flatnonzero(mesh.held), "on a held edge"),
-        ):
+        for nodes, where in ((inside, "inside an element that absorbs"), (np.flatnonzero(mesh.held), "on a held edge")):
             if np.isin(supported, nodes).any():
                 raise ValueError(f"a supported node is {where}")
 

@@ -29,10 +29,7 @@ class Springs(NamedTuple):
 
 
 def bearing_springs(
-    bearing: Bearing,
-    table: BearingDashpots,
-    media: Sequence[tuple[Edge, BoundaryMedium]],
-    twin: np.ndarray | None,
+    bearing: Bearing, table: BearingDashpots, media: Sequence[tuple[Edge, BoundaryMedium]], twin: np.ndarray | None
 ) -> Springs:
     """The springs (αG/L)D at the particles of a side; twin (n,) : of each node in the free-field column, if any.
 

@@ -61,11 +61,7 @@ def levels_in(case: DiskCase, ground: PackedMaterial, assembly: Assembly, at_res
 
 
 def levels_by_part(
-    case: DiskCase,
-    ground: PackedMaterial,
-    assembly: Assembly,
-    seams: tuple[Seam, ...],
-    surface: np.ndarray | None,
+    case: DiskCase, ground: PackedMaterial, assembly: Assembly, seams: tuple[Seam, ...], surface: np.ndarray | None
 ) -> dict[str, np.ndarray | None]:
     """Levels of the disks of each part, see `levels_in`; those of columns under their own stress at rest."""
     found = {}

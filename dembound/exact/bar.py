@@ -219,11 +219,7 @@ def _searched_limit(horizon: int, shares: tuple[float, ...]) -> float:
 
 
 def cells_per_wavelength(
-    horizon: int,
-    courant: float,
-    error: float = 0.01,
-    of: Speed = "phase",
-    shares: tuple[float, ...] | None = None,
+    horizon: int, courant: float, error: float = 0.01, of: Speed = "phase", shares: tuple[float, ...] | None = None
 ) -> float:
     """Spacings per wavelength from which on the relative error of a wave's speed c is at most `error`.
 

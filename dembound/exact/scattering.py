@@ -70,12 +70,7 @@ class PlaneWave:
 
 
 def scattered_motion(
-    times: np.ndarray,
-    places: np.ndarray,
-    wave: PlaneWave,
-    radius: float,
-    solid: Solid,
-    tolerance: float = 1e-5,
+    times: np.ndarray, places: np.ndarray, wave: PlaneWave, radius: float, solid: Solid, tolerance: float = 1e-5
 ) -> ScatteredMotion:
     """Motion of places (m, 2), in m from the cavity's axis and not inside the cavity, at times (k,) s.
 

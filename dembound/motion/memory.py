@@ -52,12 +52,7 @@ BYTES: Mapping[str, Counts] = {
     "dashpots": {"place": 32, "disk_slot": 8},  # with masses
     "rolling": {"place": 8},  # rotation that has not slid
     "arms": {"arm": 24},  # lags of relaxation arms, of three components
-    "listing": {
-        "pair": 180,
-        "place": 38,
-        "disk_slot": 28,
-        "disk": 8,
-    },  # the old list (56), arrays to sort by; new ones
+    "listing": {"pair": 180, "place": 38, "disk_slot": 28, "disk": 8},  # the old list (56), arrays to sort by; new ones
     "strain_energy": {"contact": 13},
     "loads": {"disk": 24, "disk_slot": 24},  # also in slots
     "change": {"disk": 24},  # velocity at the change of law

@@ -218,11 +218,7 @@ def pair_forces(ground: PackedMaterial) -> np.ndarray:
 
 
 def rest_forces(
-    ground: PackedMaterial,
-    at_rest: AtRest,
-    kind: np.ndarray,
-    heights: np.ndarray,
-    x: np.ndarray | None = None,
+    ground: PackedMaterial, at_rest: AtRest, kind: np.ndarray, heights: np.ndarray, x: np.ndarray | None = None
 ) -> np.ndarray:
     """Normal, shear and bending forces of the brick's contacts with their bonds, and shear forces of contacts, (4, k).
 

@@ -171,10 +171,7 @@ def returned_range(frequencies: np.ndarray, shares: np.ndarray) -> str:
     """Where shares (f,) of energy at ascending frequencies (Hz) exceed `SEEN`, in words."""
     if (shares > SEEN).all():
         return "everywhere"
-    ends = {
-        "below": _crossing(frequencies, shares),
-        "above": _crossing(frequencies[::-1], shares[::-1]),
-    }
+    ends = {"below": _crossing(frequencies, shares), "above": _crossing(frequencies[::-1], shares[::-1])}
     return " and ".join(f"{way} {end:.3g} Hz" for way, end in ends.items() if end > 0.0) or "nowhere"
 
 

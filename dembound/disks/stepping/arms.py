@@ -39,10 +39,7 @@ def arms_of(scene: DiskBody, contacts: ContactList, time_step: float) -> Arms:
     other = shares_of_others(scene.ground, first, second)
     one, two = (
         (share[:, None] * weight[layer], np.log(decay[layer]))
-        for share, layer in (
-            (1.0 - other, scene.ground.layer_of(first)),
-            (other, scene.ground.layer_of(second)),
-        )
+        for share, layer in ((1.0 - other, scene.ground.layer_of(first)), (other, scene.ground.layer_of(second)))
     )
     both = one[0] + two[0]
     rate = np.where(both > 0.0, (one[0] * one[1] + two[0] * two[1]) / np.where(both > 0.0, both, 1.0), 0.0)

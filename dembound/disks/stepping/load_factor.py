@@ -60,9 +60,7 @@ class LoadFactor(Every):
             constants, kind, _ = stressed(scene.inside, plain, part.assembly, scene.at_rest_of(part.name))
             constants, columns = np.split(constants, [scene.ground.law.width + STRAIN], axis=1)
             pairs = part.pairs._replace(
-                constants=of_law(constants),
-                began=began_of(constants),
-                contact_type=kind.astype(np.uint32),
+                constants=of_law(constants), began=began_of(constants), contact_type=kind.astype(np.uint32)
             )
             own = in_columns(columns, limits.geometry) if scene.inside.is_layered else limits
             bonds = bond_factors(scene.case, scene.ground, part.assembly, alike=part.name in COLUMNS)

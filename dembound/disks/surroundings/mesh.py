@@ -51,12 +51,7 @@ class ElementSizes(NamedTuple):
 
     @classmethod
     def of(
-        cls,
-        case: DiskCase,
-        ground: PackedMaterial,
-        body: Assembly,
-        sides: Sequence[str],
-        periodic: tuple[bool, bool],
+        cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], periodic: tuple[bool, bool]
     ) -> ElementSizes:
         """Sizes of the elements of a body with a continuum beyond some sides.
 

@@ -28,12 +28,7 @@ class RecordedContinuum(Beside):
     """
 
     def __init__(
-        self,
-        outside: Surroundings,
-        waves: Undisturbed | None,
-        disks: Assembly,
-        mass: np.ndarray,
-        diameter: float,
+        self, outside: Surroundings, waves: Undisturbed | None, disks: Assembly, mass: np.ndarray, diameter: float
     ) -> None:
         self.nodes = outside.nodes
         self._outside, self._waves = outside, waves
