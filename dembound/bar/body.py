@@ -33,7 +33,11 @@ def largest_stable_step(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -
     found to the last bits by bisection.
     """
     scaled = _by_mass(bands, mass, held)
-    low, high = 0.0, _row_sums(scaled)
+    sums = np.abs(scaled[0])  # of |entries| of each row: no eigenvalue is larger than all of them (Gershgorin)
+    for d, band in enumerate(np.abs(scaled[1:]), start=1):
+        sums = sums + band
+        sums[d:] += band[:-d]
+    low, high = 0.0, float(sums.max())
     if high == 0.0:
         return np.inf
     for _ in range(BISECTIONS):
@@ -61,15 +65,6 @@ def _by_mass(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> np.ndarra
         band[: len(root) - d] *= root[d:]
         band[len(root) - d :] = 0.0
     return scaled
-
-
-def _row_sums(bands: np.ndarray) -> float:
-    """Largest sum of |entries| in a row of a symmetric banded matrix: no eigenvalue is larger (Gershgorin)."""
-    sums = np.abs(bands[0])
-    for d, band in enumerate(np.abs(bands[1:]), start=1):
-        sums = sums + band
-        sums[d:] += band[:-d]
-    return float(sums.max())
 
 
 def _is_above(bands: np.ndarray, value: float) -> bool:
@@ -114,14 +109,10 @@ def counts_of(case: BarCase) -> dict[str, float]:
 def run_bytes(case: BarCase) -> float:
     """Largest RAM (bytes) of a run, with the temporary arrays of its largest moment."""
     counts, snapshots = counts_of(case), case.output.snapshots > 0
+    run = ("bar", "bonds", "bar_motion", "ledger", "record", "bar_layer")
     stages = {
         "step": total(counts, "bar", "bonds", "bands"),
-        "run": total(
-            counts,
-            *("bar", "bonds", "bar_motion", "ledger", "record", "bar_layer"),
-            opening=case.bar.opens,
-            damage=snapshots,
-        ),
+        "run": total(counts, *run, opening=case.bar.opens, damage=snapshots),
         "export": total(counts, bar_export=snapshots),
     }
     return largest(stages, case)

@@ -185,11 +185,7 @@ class LayerTie(Tie):
         self._layers = layers
         self._bundle = _laid_out(layers, count, time_step)
         self.through = self._bundle.through
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Nodes of the bar (k,) whose bonds reach into layers, ascending."""
-        return np.unique(self._bundle.inner)
+        self.nodes = np.unique(self._bundle.inner)
 
     def bundle(self, supported: np.ndarray) -> BarLayers:
         """The arrays for the kernels."""
@@ -212,22 +208,12 @@ def _laid_out(layers: Sequence[EndLayer], count: int, step: float) -> BarLayers:
     ends, rows = (len(layers), longest), (len(layers), reach, longest)
     inner = np.stack([each.inner for each in layers])
     outwards = np.array([-1.0 if each.side == "left" else 1.0 for each in layers])
+    plane = inner[:, :-1] - (outwards[:, None] < 0.0)
+    of_nodes = {name: np.zeros(ends) for name in ("velocity", "displacement", "keep", "mobility", "ground")}
+    of_bonds = {name: np.zeros(rows) for name in ("force", "bond_keep", "bond_gain")}
+    across = {"pull": np.zeros(longest), "through": np.zeros(count - 1)}
     arrays = BarLayers(
-        inner=inner,
-        line=inner,
-        plane=inner[:, :-1] - (outwards[:, None] < 0.0),
-        outwards=outwards,
-        velocity=np.zeros(ends),
-        displacement=np.zeros(ends),
-        force=np.zeros(rows),
-        bond_keep=np.zeros(rows),
-        bond_gain=np.zeros(rows),
-        keep=np.zeros(ends),
-        mobility=np.zeros(ends),
-        ground=np.zeros(ends),
-        pull=np.zeros(longest),
-        through=np.zeros(count - 1),
-        step=step,
+        inner=inner, line=inner, plane=plane, outwards=outwards, step=step, **of_nodes, **of_bonds, **across
     )
     for e, each in enumerate(layers):
         own, half = slice(0, each.count), 0.5 * step

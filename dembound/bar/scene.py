@@ -41,6 +41,7 @@ class BarPart(Part):
 
     name = "bar"
     is_summarised = True
+    evolving = ("law_name", "bond_updates", "_unstable", "_reported")
 
     def __init__(
         self, scene: BarBody, time_step: float, first: Bonds | None = None, through: np.ndarray | None = None
@@ -147,19 +148,11 @@ class BarPart(Part):
 
     def saved_arrays(self) -> Arrays:
         """Springs, bonds and zones, the method in use, and the counters."""
-        return {
-            "law": np.array(self.law_name),
-            "bond_updates": np.array(self.bond_updates),
-            "unstable": np.array(self._unstable),
-            "reported": np.array(self._reported),
-            **self.bonds.saved_arrays(),
-        }
+        return {**super().saved_arrays(), **self.bonds.saved_arrays()}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self.law_name = str(saved["law"])
-        self.bond_updates, self._reported = int(saved["bond_updates"]), int(saved["reported"])
-        self._unstable = bool(saved["unstable"])
+        super().restore(saved)
         self.bonds.restore(saved)
         self._arrays = self._lay()
 

@@ -21,12 +21,6 @@ class Springs(NamedTuple):
     weight: np.ndarray
     stiffness: np.ndarray
 
-    def stiffness_at(self, nodes: np.ndarray) -> np.ndarray:
-        """Stiffness (m, 2) N/m at nodes (m,), some of which are its own."""
-        found = np.zeros((len(nodes), 2))
-        found[np.searchsorted(nodes, self.node)] = self.stiffness
-        return found
-
 
 def bearing_springs(
     bearing: Bearing, table: BearingDashpots, media: Sequence[tuple[Edge, BoundaryMedium]], twin: np.ndarray | None
@@ -54,9 +48,12 @@ def together(each: Sequence[Springs]) -> Springs:
     """The springs of several sides in one table; a node of two sides has those of both."""
     node, first = np.unique(np.concatenate([one.node for one in each]), return_index=True)
     twin, weight = np.concatenate([one.twin for one in each])[first], np.zeros(len(node))
+    stiffness = np.zeros((len(node), 2))
     for one in each:
-        weight[np.searchsorted(node, one.node)] += one.weight
-    return Springs(node, twin, weight, sum((one.stiffness_at(node) for one in each), np.zeros((len(node), 2))))
+        at = np.searchsorted(node, one.node)
+        weight[at] += one.weight
+        stiffness[at] += one.stiffness
+    return Springs(node, twin, weight, stiffness)
 
 
 class BearingTie(Tie):
@@ -73,11 +70,7 @@ class BearingTie(Tie):
         self._springs, self._layout = springs, layout
         self._rest = np.zeros((len(springs.node), 2))
         self._force = np.zeros((0, 3))
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Nodes (k,) that it acts on, ascending."""
-        return self._springs.node
+        self.nodes = springs.node
 
     def rest_at(self, datum: np.ndarray) -> None:
         """Have no force at displacements (3, n)."""
@@ -95,12 +88,5 @@ class BearingTie(Tie):
         """The arrays for the kernels; supported (s,) are all nodes of the support table, ascending."""
         node, twin, weight, stiffness = self._springs
         slot = self._layout.slot
-        return Bearings(
-            node=slot[node],
-            twin=np.where(twin >= 0, slot[twin], -1),
-            line=np.searchsorted(supported, node),
-            weight=weight,
-            stiffness=stiffness,
-            rest=self._rest,
-            force=self.force_on(supported),
-        )
+        twin, line = np.where(twin >= 0, slot[twin], -1), np.searchsorted(supported, node)
+        return Bearings(slot[node], twin, line, weight, stiffness, self._rest, self.force_on(supported))

@@ -1,4 +1,4 @@
-"""What changes at times of a run: groups that weaken, holes that are made, supports that let go."""
+"""What changes during a run: groups that weaken, holes that are made, supports that let go, pressures that follow."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.contacts.contact_list import ContactList
+from dembound.disks.pressure import in_run
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.first_law import let_go
 from dembound.disks.stepping.scene_parts import layers_of
@@ -14,7 +15,26 @@ from dembound.errors import CaseError, RunError
 from dembound.holes import Hole
 from dembound.laws.law import AnyLimits
 from dembound.motion.state import Arrays
-from dembound.motion.trackers import NEVER, Run, Tracker
+from dembound.motion.trackers import NEVER, Every, Run, Tracker
+
+STEPS = 64
+"""Steps from one position of the membranes to the next: a wave crosses some thirty disks meanwhile."""
+
+
+class Membranes(Every):
+    """Moves the membranes of pressures on sides to where the disks of their sides are."""
+
+    name = "membranes"
+
+    def __init__(self, scene: DiskScene) -> None:
+        super().__init__(STEPS)
+        self._scene = scene
+
+    def see(self, run: Run) -> None:
+        """Replace the forces of membranes by those on the disks in their present places."""
+        assert isinstance(run.system, DiskSystem)
+        load = in_run(self._scene, run.state.displacement, self._scene.steady_load)
+        run.system.follow(load, run.state, run.time_step)
 
 
 def times_of(case: DiskCase) -> list[float]:
@@ -65,6 +85,7 @@ class Changes(Tracker):
     """
 
     name = "changes"
+    evolving = ("due", "_made")
 
     def __init__(self, scene: DiskScene, system: DiskSystem, time_step: float) -> None:
         self._scene, self._system, self._time_step = scene, system, time_step
@@ -136,13 +157,8 @@ class Changes(Tracker):
             pairs.add_forces(force)
         return float(np.sum(force * run.state.velocity))
 
-    def saved_arrays(self) -> Arrays:
-        """The number of changes made, and the next step."""
-        return {**super().saved_arrays(), "made": np.array(self._made)}
-
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run."""
         super().restore(saved)
-        self._made = int(saved["made"])
         if self._made and self._scene.case.group:
             self._pairs.meet_with(*self._limits_at(self._times[self._made - 1])[1:])

@@ -7,7 +7,6 @@ together and no side holds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +15,6 @@ import numpy as np
 from dembound.disks.scene import DiskScene
 from dembound.disks.watches import far_below
 from dembound.motion.endings import RestRule
-from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
 
 LEAST = 100
@@ -164,6 +162,7 @@ class Rest(Every):
     """
 
     name = "rest"
+    evolving = ("due", "fall", "_moving")
 
     def __init__(self, scene: DiskScene, rule: RestRule, time_step: float, *, ends: bool) -> None:
         super().__init__(STEPS)
@@ -198,12 +197,3 @@ class Rest(Every):
         self.see(run)
         rest = run.time_step * self._moving if self._is_at_rest(run.state.step) else None
         return {"fall": self.fall, "kinetic": self.kinetic, "rest": rest}
-
-    def saved_arrays(self) -> Arrays:
-        """The energy of the fall, the last step at which all was not at rest, and the next look."""
-        return {**super().saved_arrays(), "fall": np.array(self.fall), "moving": np.array(self._moving)}
-
-    def restore(self, saved: Mapping[str, np.ndarray]) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        super().restore(dict(saved))
-        self.fall, self._moving = float(saved["fall"]), int(saved["moving"])

@@ -1,6 +1,6 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -13,13 +13,16 @@ from dembound.disks.faces.springs import filling_springs
 from dembound.disks.loose import beyond_neighbours, loose_eigenvalue, loose_modes, loose_viscosity, reserve
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.damped_ground import growing_by_lag
-from dembound.disks.surroundings.continuum import Surroundings
+from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError, RunError
+from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
 from dembound.laws import Stiffness
 from dembound.motion.stability import largest_eigenvalue
 from dembound.motion.state import Layout
+from dembound.motion.trackers import Every, Run
+from dembound.pairwise import P
 
 OPENING = 0.75 / CLOSING
 """Largest ω² over 4/Δt² where contacts open and close: sin²(π/3), for first pushes multiplied by CLOSING.
@@ -155,25 +158,19 @@ def _with_lag(scene: DiskScene, limit: float) -> float:
 
 
 def _largest_eigenvalue(scene: DiskScene) -> float:
-    """The largest eigenvalue of M⁻¹K (1/s²), see `motion.eigenvalue`."""
-    if not scene.continua:
-        return largest_eigenvalue(
-            scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, filling_forces(scene)
-        )
-    return _largest_with(scene, scene.continua)
+    """The largest eigenvalue of M⁻¹K (1/s²), see `motion.stability`.
 
-
-def _largest_with(scene: DiskScene, continua: Sequence[Surroundings]) -> float:
-    """Largest eigenvalue of a scene with continua: delays count as less mass, dashpots of ties as more stiffness.
-
-    A dashpot ηK that is half a step behind counts as a spring of K·2η/Δt beside K. So the step is on both sides of the
-    equation, and is found by iteration from below: each larger step makes the ties less stiff.
+    With continua delays count as less mass, and dashpots of ties as more stiffness: one ηK that is half a step behind
+    as a spring of K·2η/Δt beside K. So the step is on both sides of the equation, and is found by iteration from below:
+    each larger step makes the ties less stiff.
     """
+    continua, fill = scene.continua, filling_forces(scene)
+    if not continua:
+        return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, fill)
     mass = np.concatenate([scene.mass[: scene.disk_count], *(each.body.mass_for_limit for each in continua)])
     moving = scene.layout.spread(scene.moves.astype(float))  # ties and continua also push what does not move
-    fill, adding = filling_forces(scene), [each.adds_forces(scene.layout) for each in continua]
-    times = 1.0
-    largest = 0.0
+    adding = [each.adds_forces(scene.layout) for each in continua]
+    times, largest = 1.0, 0.0
     for _ in range(MOST_ROUNDS):
 
         def forces(u: np.ndarray, force: np.ndarray, times: float = times) -> None:
@@ -241,10 +238,42 @@ def largest_overlap(scene: DiskScene, step: float, damp: float | None = None) ->
     return reserve(ground) * (limit / step) ** 4
 
 
-def _rounded_down(step: float) -> float:
-    """The step cut to four digits: the last bits of an eigenvalue depend on the machine's instructions."""
-    unit = 10.0 ** (np.floor(np.log10(step)) - 3)
-    return float(np.floor(step / unit) * unit)
+LOOKS = 64
+"""Steps between two looks at overlaps, a few of the shortest period of the contacts."""
+
+
+class Overlaps(Every):
+    """Stops a run in which contacts overlap so far that the step is not stable.
+
+    Parameters
+    ----------
+    most : overlap (m) that is allowed.
+    """
+
+    name = "overlaps"
+
+    def __init__(self, most: float) -> None:
+        super().__init__(LOOKS)
+        self._most = most
+
+    def see(self, run: Run) -> None:
+        """Raise RunError, with time and place, for a contact that is too stiff for the step."""
+        system, u = run.system, run.state.u
+        assert isinstance(system, DiskSystem)
+        for part in system.disks.parts:
+            pairs = part.pairs
+            rows = pairs.constants[pairs.contact_type]
+            x, y = (rows[:, :2] + (u[:2, pairs.second] - u[:2, pairs.first]).T).T
+            began = began_with(pairs.began, pairs.contact_type, 0)
+            overlap = rows[:, P.touch] - np.hypot(x, y) - began
+            if overlap[most := int(np.argmax(overlap))] > self._most:
+                place = run.scene.positions[run.scene.layout.node[pairs.first[most]]]
+                shorter = run.time_step * (self._most / overlap[most]) ** 0.25
+                raise RunError(
+                    f"contacts have become too stiff for the time step: at t = {run.time:g} s near ({place[0]:.4g}, "
+                    f"{place[1]:.4g}) m one overlaps by {overlap[most]:.3g} m, the step of {run.time_step:.3g} s is "
+                    f"stable up to {self._most:.3g} m; give run.time_step = {0.5 * shorter:.2g}, or slower disks"
+                )
 
 
 def own_step(case: DiskCase, limit: float) -> float:
@@ -258,7 +287,9 @@ def own_step(case: DiskCase, limit: float) -> float:
     step = case.run.safety * limit
     if not np.isfinite(step):
         raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
-    return _rounded_down(step)
+    # cut to four digits, as the last bits of an eigenvalue depend on the machine's instructions
+    unit = 10.0 ** (np.floor(np.log10(step)) - 3)
+    return float(np.floor(step / unit) * unit)
 
 
 def choose_step(scene: DiskScene) -> tuple[float, float]:

@@ -13,7 +13,6 @@ from dembound.disks.contacts.pairs import PIECE, acting
 from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.system import DiskSystem
 from dembound.kernels.contacts import BONDED, INTACT
-from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
 from dembound.words import percent
 
@@ -43,6 +42,7 @@ class FarDisks(Every):
     """
 
     name = "far"
+    evolving = ("due", "far", "first")
 
     def __init__(self, scene: DiskScene, *, retires: bool) -> None:
         super().__init__(STEPS)
@@ -78,15 +78,6 @@ class FarDisks(Every):
             return None
         return {"disks": int(self.far.sum()), "retired": self._retires, "time": self.first * time_step}
 
-    def saved_arrays(self) -> Arrays:
-        """The disks found so far, and the next step."""
-        return {**super().saved_arrays(), "far": self.far, "first": np.array(self.first)}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        super().restore(saved)
-        self.far, self.first = saved["far"].copy(), int(saved["first"])
-
 
 def far_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
     """A warning about disks that have fallen far below the scene; found : of the summary."""
@@ -98,8 +89,6 @@ def far_warnings(found: Mapping[str, Any] | None) -> Iterator[str]:
         f"touches nothing, the first by t = {found['time']:.4g} s{cure}"
     )
 
-
-"""Steps between two looks, which take less time than one step: a multiple of those at which the loop returns anyway."""
 
 WARNS = 0.1
 """Turn (rad) of a bond above which a run is warned of: a body then grows by 0.5 %, and held from that bears a stress of
@@ -116,6 +105,7 @@ class Turns(Every):
     """
 
     name = "turns"
+    evolving = ("due", "found")
 
     def __init__(self) -> None:
         super().__init__(STEPS)
@@ -142,15 +132,6 @@ class Turns(Every):
         self.see(run)
         turn, step, *place = self.found.tolist()
         return {"turn": turn, "time": step * run.time_step, "position": place}
-
-    def saved_arrays(self) -> Arrays:
-        """The largest turn found so far, and the next step."""
-        return {**super().saved_arrays(), "found": self.found}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        super().restore(saved)
-        self.found = saved["found"].copy()
 
 
 def turn_warnings(found: Mapping[str, Any] | None, law: str, *, has_history: bool) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -9,7 +10,6 @@ from dembound.boundaries.edge import normal_axis
 from dembound.boundaries.platen import driven_components
 from dembound.motion.paths import Source
 from dembound.motion.scene import Scene
-from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 
 ACROSS = 2.0
@@ -42,26 +42,39 @@ def peak_rule(scene: Scene, sources: Sequence[Source]) -> PeakRule:
     return PeakRule(run.peak_share, hold, begin + hold)
 
 
-class Peak(Tracker):
-    """Ends a run when the forces on all driven sides have been below a share of their peaks for long enough.
+class Ending(Tracker):
+    """Ends a run when what it watches has been quiet for longer than `hold`, counted from `earliest` on (s).
 
-    It reads the samples of the sides after every return of the loop without changing these returns.
+    It looks after every return of the loop without changing these returns, so histories have the same bits.
     """
 
+    evolving: ClassVar[tuple[str, ...]] = ("due", "_peaks", "_last")
+
+    def __init__(self, hold: float, earliest: float, time_step: float) -> None:
+        self._hold, self._earliest = (int(np.ceil(time / time_step)) for time in (hold, earliest))
+        self._peaks = np.zeros(0)  # so far
+        self._last = -1  # step at which it was not quiet
+
+    def _end(self, run: Run) -> None:
+        """End the run if the last step at which it was not quiet is long ago."""
+        if run.state.step - max(self._last, self._earliest) > self._hold:
+            run.stopped = True
+
+
+class Peak(Ending):
+    """Ends a run when the forces on all driven sides have been below a share of their peaks for long enough."""
+
     name = "peak"
+    evolving = (*Ending.evolving, "_first")
 
     def __init__(self, rule: PeakRule, scene: Scene, time_step: float) -> None:
+        super().__init__(rule.hold, rule.earliest, time_step)
         self._share = rule.share
-        self._hold, self._earliest = (int(np.ceil(time / time_step)) for time in (rule.hold, rule.earliest))
         names = list(scene.sides)
         each = [(names.index(side), axis) for side, axis in driven_components(scene.case.boundary) if side in names]
         self._side, self._axis = np.array(each, dtype=np.int64).reshape(-1, 2).T
         self._first = np.zeros(0)
         self._peaks = np.zeros(len(self._side))
-        self._high = -1
-
-    def handle(self, run: Run) -> None:
-        """Do nothing: this tracker is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Find the last sample at which any force was high, and end the run if that is long ago."""
@@ -75,19 +88,9 @@ class Peak(Tracker):
         so_far = np.maximum(np.maximum.accumulate(force, axis=0), self._peaks)
         high = np.flatnonzero((force >= self._share * so_far).any(axis=1))
         if len(high) > 0:
-            self._high = int(samples.steps[high[-1]])
+            self._last = int(samples.steps[high[-1]])
         self._peaks = so_far[-1]
-        if run.state.step - max(self._high, self._earliest) > self._hold:
-            run.stopped = True
-
-    def saved_arrays(self) -> Arrays:
-        """The forces at the start, the largest so far, and the last step at which one was high."""
-        return {**super().saved_arrays(), "first": self._first, "peaks": self._peaks, "high": np.array(self._high)}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays`."""
-        super().restore(saved)
-        self._first, self._peaks, self._high = saved["first"].copy(), saved["peaks"].copy(), int(saved["high"])
+        self._end(run)
 
 
 @dataclass(frozen=True)
@@ -135,8 +138,11 @@ def silent_rule(scene: Scene, sources: Sequence[Source]) -> Silent:
     still on its way.
     """
     run, places = scene.case.run, monitored(scene)
-    earliest = max((_passed(source, places) for source in sources), default=0.0)
-    return Silent(run.silent_level, run.silent_for or _longest(scene, sources, places), earliest)
+    waves = [source.over - source.start for source in sources if np.isfinite(source.over)]
+    slowest = min((source.slowest for source in sources), default=np.inf)
+    ways = [np.abs(scene.plane(side) - places[:, normal_axis(side)]) for side in scene.edges]
+    hold = run.silent_for or max(*waves, 0.0, 2.0 * float(np.max(ways, initial=0.0)) / slowest)
+    return Silent(run.silent_level, hold, max((_passed(source, places) for source in sources), default=0.0))
 
 
 def monitored(scene: Scene) -> np.ndarray:
@@ -151,14 +157,6 @@ def _passed(source: Source, places: np.ndarray) -> float:
     return ends + float(source.distance(places).max(initial=0.0)) / source.slowest
 
 
-def _longest(scene: Scene, sources: Sequence[Source], places: np.ndarray) -> float:
-    """The default of `silent_for` (s)."""
-    waves = max((source.over - source.start for source in sources if np.isfinite(source.over)), default=0.0)
-    slowest = min((source.slowest for source in sources), default=np.inf)
-    ways = [np.abs(scene.plane(side) - places[:, normal_axis(side)]) for side in scene.edges]
-    return max(waves, 2.0 * float(np.max(ways, initial=0.0)) / slowest)
-
-
 def last_loud(speeds: np.ndarray, level: float, peaks: np.ndarray) -> int:
     """The last sample at which any monitor is above `level` times its largest speed so far; -1 for none.
 
@@ -169,10 +167,8 @@ def last_loud(speeds: np.ndarray, level: float, peaks: np.ndarray) -> int:
     return int(loud[-1]) if len(loud) > 0 else -1
 
 
-class Silence(Tracker):
+class Silence(Ending):
     """Ends a run when all monitors have been silent for long enough; a monitor that has not moved yet is silent, too.
-
-    It checks after every return of the loop without changing these returns, so histories have the same bits.
 
     Parameters
     ----------
@@ -183,13 +179,8 @@ class Silence(Tracker):
     name = "silence"
 
     def __init__(self, rule: Silent, time_step: float) -> None:
+        super().__init__(rule.hold, rule.earliest, time_step)
         self._level = rule.level
-        self._hold, self._earliest = (int(np.ceil(time / time_step)) for time in (rule.hold, rule.earliest))
-        self._peaks = np.zeros(0)
-        self._loud = -1
-
-    def handle(self, run: Run) -> None:
-        """Do nothing: this tracker is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Find the last step at which any monitor was loud, and end the run if that is long ago."""
@@ -198,17 +189,6 @@ class Silence(Tracker):
         peaks = self._peaks if self._peaks.size else np.zeros(speeds.shape[1])
         loud = last_loud(speeds, self._level, peaks)
         if loud >= 0:
-            self._loud = run.state.step - len(record) + loud
+            self._last = run.state.step - len(record) + loud
         self._peaks = np.maximum(peaks, speeds.max(axis=0, initial=0.0))
-        since = run.state.step - max(self._loud, self._earliest)
-        if since > self._hold:
-            run.stopped = True
-
-    def saved_arrays(self) -> Arrays:
-        """The largest speed of every monitor so far, and the last step at which one was loud."""
-        return {**super().saved_arrays(), "peaks": self._peaks, "loud": np.array(self._loud)}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays`."""
-        super().restore(saved)
-        self._peaks, self._loud = saved["peaks"].copy(), int(saved["loud"])
+        self._end(run)

@@ -137,6 +137,7 @@ class Ledger(Tracker):
     """
 
     name = "ledger"
+    evolving = ("due", "_counted", "_came")
 
     def __init__(self, run: Run, interval: int, last: int = NEVER) -> None:
         self.entries: list[Entry] = []
@@ -190,14 +191,16 @@ class Ledger(Tracker):
             before = state.layout.spread(np.where(run.scene.moves, -state.velocity, 0.0))
         kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
-        load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
-        load += system.work_before
+        load = system.work_before
+        if system.load.any():  # u is taken by node, contiguous by row, so that sums have one order of terms
+            load += float(np.sum(system.load * (np.take(u, state.layout.slot, axis=1) - state.datum)))
         outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
         damping -= system.counted(u) - self._counted
         shift = system.spring_shift(u)
         outside += shift
         balance = turning + balancing - shift
-        sides = np.column_stack([state.side_work[1], self._in_springs(run, u)])
+        in_springs = np.zeros(0) if run.sides is None else run.sides.stored(u, state.datum)
+        sides = np.column_stack([state.side_work[1], in_springs])
         loads = 0.0
         if run.sides is not None and run.sides.has_loads:
             loads = outside - system.work_of_walls - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
@@ -207,7 +210,10 @@ class Ledger(Tracker):
             self._came = error
         error -= self._came
         came = max(outside, float(state.supplied[0])) if system.supply_is_plain else outside
-        supplied = self._supplied(came, load)
+        self._most = max(self._most[0], came), max(self._most[1], load)
+        supplied = self._came + sum(self._most)
+        if supplied <= AT_REST * sum(self._first):
+            supplied = 0.0  # rounding
         stored = kinetic, contact, bond, load, balance, outside, loads
         energies = *stored, *taken, law_switch, stepping, supplied, error
         time = (state.step - 1) * run.time_step
@@ -227,19 +233,6 @@ class Ledger(Tracker):
             kinetic += 0.125 * float(np.sum(inertia * (earlier + later) ** 2))
             stepping -= 0.125 * float(np.sum(inertia * (later - earlier) ** 2))
         return kinetic, stepping
-
-    def _supplied(self, outside: float, load: float) -> float:
-        """Largest energy (J) supplied until an entry, by boundaries and driven loads, and by steady loads.
-
-        0 if it is rounding.
-        """
-        self._most = max(self._most[0], outside), max(self._most[1], load)
-        supplied = self._came + sum(self._most)
-        return supplied if supplied > AT_REST * sum(self._first) else 0.0
-
-    def _in_springs(self, run: Run, u: np.ndarray) -> np.ndarray:
-        """Energy (s,) J in the springs of every side at displacements (3, slots), of a settled body since the start."""
-        return np.zeros(0) if run.sides is None else run.sides.stored(u, run.state.datum)
 
     def _watch(self, run: Run, u: np.ndarray) -> None:
         """Raise RunError if the run has gained energy without supply, or if two terms are large and opposite.
@@ -281,28 +274,17 @@ class Ledger(Tracker):
     def saved_arrays(self) -> Arrays:
         """Entries, the supplied energies, and an entry that has begun."""
         begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
-        return {
-            "due": np.array(self.due),
-            "entries": self.columns,
-            "sides": self.side_columns,
-            "first": np.array(self._first),
-            "counted": np.array(self._counted),
-            "came": np.array(self._came),
-            "most": np.array(self._most),
-            "has_begun": np.array(self._begun is not None),
-            "u": begun.u,
-            "before": begun.before,
-            "balancing": np.array(begun.balancing),
-            "laws": np.array(begun.laws),
-        }
+        numbers = {"first": self._first, "most": self._most, "has_begun": self._begun is not None, **begun._asdict()}
+        kept = {"entries": self.columns, "sides": self.side_columns, **super().saved_arrays()}
+        return kept | {name: np.asarray(values) for name, values in numbers.items()}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run; raises ValueError for those of another case."""
-        self.due = int(saved["due"])
+        super().restore(saved)
         self.entries = [Entry(*row) for row in saved["entries"].tolist()]
         self.sides = list(saved["sides"])
         self._first, self._most = ((float(one), float(two)) for one, two in (saved["first"], saved["most"]))
-        self._counted, self._came = float(saved["counted"]), float(saved["came"])
+
         begun = _Begun(saved["u"].copy(), saved["before"].copy(), float(saved["balancing"]), int(saved["laws"]))
         self._begun = begun if saved["has_begun"] else None
         if self.due > (self._step_of_last() if self.entries else 0) + self._interval + 1:
@@ -329,8 +311,3 @@ class Ledger(Tracker):
         del self.sides[self.regular_entries :]
         del self.entries[self.regular_entries :]
         self.due = min(last - past + self._interval, self._last)
-
-
-def _by_node(values: np.ndarray, state: State) -> np.ndarray:
-    """Values (3, slots) reordered by node (3, n), contiguous by row, so that sums have one order of terms."""
-    return np.take(values, state.layout.slot, axis=1)

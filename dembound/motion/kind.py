@@ -324,18 +324,13 @@ class Kind(ABC, Generic[C, S]):
 
 
 def echoes(planned: Plan) -> Entries:
-    """The line for `dembound check` on the first echo of each artificial side, if there are any within the run."""
-    scene = planned.scene
-    if scene.case.monitor and (lines := list(_echoes(planned))):
-        yield "echoes", "; ".join(lines)
-
-
-def _echoes(planned: Plan) -> Iterator[str]:
-    """A line for each artificial side without waves with the time of its first echo at a monitor."""
-    scene = planned.scene
+    """The line for `dembound check` on the first echo of each artificial side without waves at a monitor, if any."""
+    scene, lines = planned.scene, []
+    names = [monitor.name for monitor in scene.case.monitor]
+    if not names:
+        return
     sources = planned.kind.sources(scene)
     speed, places = planned.kind.front(scene, planned.time_step).speed, monitored(scene)
-    names = [monitor.name for monitor in scene.case.monitor]
     for side in SIDES:
         table, axis = scene.case.side(side), normal_axis(side)
         is_across = axis in planned.stepped.uniform_axes or scene.size[axis] == 0.0
@@ -345,4 +340,7 @@ def _echoes(planned: Plan) -> Iterator[str]:
         times = [source.start + source.distance_over(side, scene.plane(side), places) / speed for source in seen]
         first = np.min(times, axis=0, initial=np.inf) if times else np.full(len(places), np.inf)
         if first.min() < scene.case.run.duration:
-            yield f"{side} ({table.type}) may reflect to {names[int(first.argmin())]} from {first.min():.3g} s on"
+            name = names[int(first.argmin())]
+            lines.append(f"{side} ({table.type}) may reflect to {name} from {first.min():.3g} s on")
+    if lines:
+        yield "echoes", "; ".join(lines)

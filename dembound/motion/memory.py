@@ -129,12 +129,8 @@ def total(counts: Counts, *always: str, **asked: float) -> float:
     always : rows. asked : rows that are there if asked for, or so many times.
     """
     rows = dict.fromkeys(always, 1.0) | asked
-    return sum(
-        times * each * counts.get(thing, 0.0)
-        for name, times in rows.items()
-        if times
-        for thing, each in BYTES[name].items()
-    )
+    each = ((times, *item) for name, times in rows.items() for item in BYTES[name].items())
+    return sum(times * size * counts.get(thing, 0.0) for times, thing, size in each)
 
 
 def recorded(monitors: int, block: int, width: int, lines: float) -> dict[str, float]:

@@ -1,14 +1,14 @@
 """Parts and ties: a part is a range of the nodes with its own law, a tie couples nodes of two parts."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from dembound.kernels.tables.motion import Followers
-from dembound.motion.state import Arrays, State, arrays_of_owner
+from dembound.motion.state import Arrays, Owner, State, arrays_of_owner
 
 MANY = 10
 """Largest number of broken bonds of a run without a note that it is one draw of many."""
@@ -48,7 +48,7 @@ def joined(lists: Sequence[Cracks]) -> Cracks:
     return Cracks(*(column[order] for column in columns))
 
 
-class Part(ABC):
+class Part(Owner, ABC):
     """Nodes that move under one law.
 
     Attributes
@@ -84,14 +84,6 @@ class Part(ABC):
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called; steps : number of steps done."""
 
-    @abstractmethod
-    def saved_arrays(self) -> Arrays:
-        """All arrays that change during a run, by name."""
-
-    @abstractmethod
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-
     def blown_up(self, velocity: np.ndarray) -> int | None:
         """The node of an instability that adds energy, if the part can detect it; velocity (3, slots) m/s."""
         return None
@@ -105,35 +97,24 @@ class Part(ABC):
         return {}
 
 
-class Tie(ABC):
+class Tie(Owner, ABC):
     """A coupling between nodes of two parts, or of a part and the medium beyond it.
 
     Attributes
     ----------
     name : in the state, where it has arrays to save.
+    nodes : (k,) that it acts on, ascending; the support table moves them.
     """
 
     name: str = "tie"
-
-    @property
-    @abstractmethod
-    def nodes(self) -> np.ndarray:
-        """Nodes (k,) that it acts on, ascending; the support table moves them."""
+    nodes: np.ndarray
 
     @abstractmethod
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """Arrays of the part for the kernels; supported (s,) are all nodes of the support table, ascending."""
 
-    def saved_arrays(self) -> Arrays:
-        """All arrays that change during a run, by name; by default none."""
-        return {}
 
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        return
-
-
-class System:
+class System(Owner):
     """All moving parts of a run, in the order of their nodes, with ties and steady forces.
 
     Parameters
@@ -151,6 +132,7 @@ class System:
     work of the outside contains no work of forces at rest, which are balanced.
     """
 
+    evolving = ("load", "work_before")
     refused: tuple[str, ...] = ()
     supply_is_plain = True
 
@@ -278,21 +260,16 @@ class System:
         """
         return {}
 
-    @property
-    def _remembering(self) -> list[Part | Tie]:
-        """The parts and ties."""
-        return [*self.parts, *self.ties]
-
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
-        saved: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady, "before": np.array(self.work_before)}
-        for each in self._remembering:
+        saved = {**super().saved_arrays(), "steady": self.steady}
+        for each in (*self.parts, *self.ties):
             saved |= {f"{each.name}/{name}": values for name, values in each.saved_arrays().items()}
         return saved
 
-    def restore(self, saved: Mapping[str, Any]) -> None:
+    def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self.load, self.steady = saved["load"].copy(), saved["steady"].copy()
-        self.work_before = float(saved["before"])
-        for each in self._remembering:
+        super().restore(saved)
+        self.steady = saved["steady"].copy()
+        for each in (*self.parts, *self.ties):
             each.restore(arrays_of_owner(saved, each.name))

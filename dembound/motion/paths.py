@@ -86,15 +86,11 @@ def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front
     needed = -np.inf
     for source in sources:
         reach = front.reach(duration - source.start)
-        across = _gap(source.box[1 - axis], source.box[3 - axis], places[:, 1 - axis])
+        low, high, at = source.box[1 - axis], source.box[3 - axis], places[:, 1 - axis]
+        across = np.maximum(np.maximum(low - at, at - high), 0.0)
         there = np.sqrt(np.maximum(reach**2 - across**2, 0.0)) + sign * places[:, axis]
         nearest = sign * source.box[2 + axis if sign > 0.0 else axis]
         # the way over the plane is the one there and back, or only back from a source that extends beyond it
         planes = np.minimum(there, 0.5 * (there + nearest))[reach > across]
         needed = max(needed, float(planes.max(initial=-np.inf)))
     return sign * needed
-
-
-def _gap(low: float, high: float, values: np.ndarray) -> np.ndarray:
-    """Distance of values (k,) from an interval."""
-    return np.maximum(np.maximum(low - values, values - high), 0.0)

@@ -7,7 +7,7 @@ several nodes, and the forces on these are computed from its motion.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -76,7 +76,9 @@ class NodeSides:
         whole = scene.whole
         self._sides = whole.sides
         self.names = list(self._sides)
-        self.has_loads = _has_loads(whole)
+        shares = whole.supports.shares
+        of_sides = 0 if shares is None else int(np.count_nonzero(shares.signal >= 0))
+        self.has_loads = len(whole.supports.drive_row) > of_sides
         self._like = scene.widened("node", np.arange(scene.count))
         self._scene, self._whole, self._nodes = scene, whole, supports.nodes
         self._members: list[tuple[np.ndarray, np.ndarray]] = []
@@ -153,7 +155,9 @@ class NodeSides:
             for component in range(3):
                 batches += self._split(kinds.TIED, number, component, -1, tied, np.ones(len(tied)))
             if shares is not None and name in shares.power:
-                yield _with_power(number, shares.power[name])
+                # the power of waves that enter by forces only, given as a signal
+                none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
+                yield _Batch(kinds.POWER, number, 0, shares.power[name], none, nothing, nothing, none)
                 batches = [batch._replace(leaves=True) for batch in batches]
             yield from batches
 
@@ -216,44 +220,22 @@ class NodeSides:
 
     def _laid_out(self, batches: list[_Batch]) -> tables.Sides:
         """All batches and members in one table."""
-
-        def column(name: str, kind: type[np.generic]) -> np.ndarray:
-            return np.array([getattr(batch, name) for batch in batches], dtype=kind)
-
-        def elements(name: str, kind: type[np.generic]) -> np.ndarray:
-            return np.concatenate([np.zeros(0, kind), *(getattr(batch, name) for batch in batches)]).astype(kind)
-
-        slot = self._scene.layout.slot
-        nodes = [slot[node] for node, _ in self._members]
+        columns: dict[str, Any] = {}
+        for name in ("kind", "side", "component", "signal", "leaves"):
+            kind: Any = np.bool_ if name == "leaves" else np.int64
+            columns[name] = np.array([getattr(batch, name) for batch in batches], dtype=kind)
+        for name in ("line", "column", "constant", "follow"):
+            kind = np.int64 if name in ("line", "column") else np.float64
+            columns[name] = np.concatenate([np.zeros(0, kind), *(getattr(b, name) for b in batches)]).astype(kind)
+        nodes = [self._scene.layout.slot[node] for node, _ in self._members]
         return tables.NO_SIDES._replace(
-            kind=column("kind", np.int64),
-            side=column("side", np.int64),
-            component=column("component", np.int64),
-            signal=column("signal", np.int64),
-            leaves=column("leaves", np.bool_),
+            **columns,
             start=np.cumsum([0, *(len(batch.line) for batch in batches)]),
-            line=elements("line", np.int64),
-            constant=elements("constant", np.float64),
-            follow=elements("follow", np.float64),
-            column=elements("column", np.int64),
             member_start=np.cumsum([0, *(len(node) for node in nodes)]),
             member=np.concatenate([np.zeros(0, np.int64), *nodes]),
             weight=np.concatenate([np.zeros(0), *(weight for _, weight in self._members)]),
             bearer_start=np.zeros(len(nodes) + 1, dtype=np.int64),
         )
-
-
-def _with_power(number: int, signal: int) -> _Batch:
-    """A batch for the power of the waves that enter through a side by forces only, given as a signal."""
-    nothing = np.zeros(0, dtype=np.int64)
-    return _Batch(kinds.POWER, number, 0, signal, nothing, np.zeros(0), np.zeros(0), nothing)
-
-
-def _has_loads(scene: Scene) -> bool:
-    """Whether loads that follow a wave act on a scene, in addition to its sides."""
-    shares = scene.supports.shares
-    of_sides = 0 if shares is None else int(np.count_nonzero(shares.signal >= 0))
-    return bool(len(scene.supports.drive_row) > of_sides)
 
 
 def _bearers(

@@ -69,14 +69,8 @@ class Simulation:
         self.system = scene.system(time_step) if system is None else system
         datum = np.zeros((3, scene.count)) if datum is None else datum
         layout = scene.layout
-        self.state = State(
-            layout=layout,
-            u=layout.spread(datum),
-            v=aligned_zeros(3, layout.count),
-            datum=datum,
-            peaks=np.zeros((len(scene.tracked), 3, 2)),
-            top=np.zeros(layout.count if scene.case.output.peaks else 0),
-        )
+        peaks, top = np.zeros((len(scene.tracked), 3, 2)), np.zeros(layout.count if scene.case.output.peaks else 0)
+        self.state = State(layout, layout.spread(datum), aligned_zeros(3, layout.count), datum, peaks, top)
         if (velocity := scene.first_velocity) is not None:
             self.state.velocity = velocity
         self.state.owners["system"] = self.system
@@ -257,19 +251,8 @@ class Simulation:
         body = tables.Body(self._mobility, self._inverse_inertia, self.scene.free, load, self._damp, self.time_step)
         probes, tracked = self._probe_slots, self._tracked_slots
         log = tables.Log(probes, record, tracked, state.peaks, state.top, state.work, state.supplied, sides)
-        done, why = loop.advance(
-            state.u,
-            self._u_next,
-            state.v,
-            state.step,
-            system.laws(),
-            system.bundles(self._supports.nodes),
-            turning,
-            body,
-            supports,
-            log,
-            self._entered,
-        )
+        u, u_next, v, laws, ties = state.u, self._u_next, state.v, system.laws(), system.bundles(self._supports.nodes)
+        done, why = loop.advance(u, u_next, v, state.step, laws, ties, turning, body, supports, log, self._entered)
         if turning is not None and system.turning is not None and not state.layout.is_plain:
             system.steady[:2, system.turning.node] = load[:2, turning.node]
         with put_off():

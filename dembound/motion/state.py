@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -73,14 +73,28 @@ WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning", "clo
 """Names of the columns of the work, see kernels.tables.Log."""
 
 
-class Owner(Protocol):
-    """An object that contains a part of the state: a system of parts, a tracker."""
+class Owner:
+    """An object that contains a part of the state: a system of parts, a part, a tie, a tracker.
+
+    name : in the state, where it is one of several. evolving : its attributes that change during a run, arrays,
+    numbers, flags or texts, which the state has under their names without a leading underscore. Classes with others
+    extend `saved_arrays` and `restore`.
+    """
+
+    name: str
+    evolving: ClassVar[tuple[str, ...]] = ()
 
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
+        return {name.removeprefix("_"): np.asarray(getattr(self, name)) for name in self.evolving}
 
     def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
+        """Restore the arrays returned by `saved_arrays` in another run of the same case; ValueError for another one."""
+        for name in self.evolving:
+            now, kept = getattr(self, name), saved[name.removeprefix("_")]
+            if np.size(now) and np.shape(now) != kept.shape:  # some are empty at first
+                raise ValueError(f"{name} has the shape {kept.shape}, must have {np.shape(now)}")
+            setattr(self, name, kept.copy() if isinstance(now, np.ndarray) else type(now)(kept.item()))
 
 
 @dataclass

@@ -1,11 +1,10 @@
 """Trackers: objects that are called during a run, at steps they choose; and the time of the parts of a run."""
 
 import time
-from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numba.core import event
@@ -15,7 +14,7 @@ from dembound.interrupts import look
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.sides import NodeSides, Samples
-from dembound.motion.state import Arrays, State
+from dembound.motion.state import Owner, State
 
 
 class _Looks(event.Listener):
@@ -124,7 +123,7 @@ class Run(Protocol):
         """Smallest and largest velocity so far of the nodes of one side of the whole scene, (k, 3, 2)."""
 
 
-class Tracker(ABC):
+class Tracker(Owner):
     """Called during a run at chosen steps; the loop runs to the next step at which a tracker is due.
 
     Attributes
@@ -133,23 +132,14 @@ class Tracker(ABC):
     due : the next step at which it is called; `handle` must set a later one.
     """
 
-    name: str
     due: int = NEVER
+    evolving: ClassVar[tuple[str, ...]] = ("due",)
 
-    @abstractmethod
     def handle(self, run: Run) -> None:
-        """Read the run at the step that was due, and set the next one."""
+        """Read the run at the step that was due, and set the next one; by default nothing, as it is never due."""
 
-    def observe(self, run: Run, record: np.ndarray) -> None:  # noqa: B027  # few trackers use it
+    def observe(self, run: Run, record: np.ndarray) -> None:
         """Receive the record of the probes for the steps since the last call, see `Simulation.advance`."""
-
-    def saved_arrays(self) -> Arrays:
-        """All arrays that change during a run, by name."""
-        return {"due": np.array(self.due)}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self.due = int(saved["due"])
 
 
 class Every(Tracker):
@@ -169,9 +159,8 @@ class Every(Tracker):
         self.see(run)
         self.due = run.state.step + self.steps
 
-    @abstractmethod
     def see(self, run: Run) -> None:
-        """Read the run at a step that was due."""
+        """Read the run at a step that was due; by default nothing, as it is `observe` that reads."""
 
 
 class Watch(Every):
@@ -181,9 +170,6 @@ class Watch(Every):
     """
 
     name = "watch"
-
-    def see(self, run: Run) -> None:
-        """Do nothing: `observe` checks after every return of the loop."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Raise RunError, with time and place, when a node is faster than waves can make it."""
@@ -213,9 +199,6 @@ class Records(Tracker):
 
     def __init__(self) -> None:
         self.records: list[np.ndarray] = []
-
-    def handle(self, run: Run) -> None:
-        """Do nothing: this tracker is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Keep the record."""

@@ -296,7 +296,7 @@ def test_arrays_that_kernels_must_not_see_are_refused() -> None:
         ("ledger/due", 10**6, "ledger is not due before step 1000000"),
         ("ledger/due", good["ledger/due"].astype(float), "ledger/due has 0 axes of float64"),
         ("ledger/most", good["ledger/most"][:1], "not enough values"),
-        ("system/side_watch/turn", np.zeros(0), "could not broadcast"),
+        ("system/side_watch/turn", np.zeros(0), "turn has the shape"),
     ):
         bad = good[name].copy() if np.isscalar(value) else value
         if np.isscalar(value):

@@ -59,7 +59,7 @@ class JointTie(Tie):
         joint, count = faces.joint, len(faces.disk)
         self.name = f"joint_{joint.name}"
         self.faces, self._layout, self._count = faces, layout, layout.count
-        self._nodes = np.unique(faces.disk)
+        self.nodes = np.unique(faces.disk)
         self._known: np.ndarray | None = None
         beside = [ground.zone_materials[zone] for zone in np.unique(ground.zone_of(positions[faces.disk]))]
         speeds = [float(np.sqrt(each.material_tensor[0, 0] / each.density)) for each in beside]
@@ -135,11 +135,6 @@ class JointTie(Tie):
         xx, yy, xy = at_rest.at(y, x)
         pull = np.stack([xx * normal[:, 0] + xy * normal[:, 1], xy * normal[:, 0] + yy * normal[:, 1]], axis=1)
         return -np.sum(pull * normal, axis=1), -np.sum(pull * self.faces.along, axis=1)
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Disks (k,) with faces, ascending."""
-        return self._nodes
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """The arrays for the kernels; supported (s,) are all nodes of the support table, ascending.

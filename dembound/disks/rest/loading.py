@@ -19,7 +19,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.stepping.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kernels.contact_measures import slack
-from dembound.motion.state import Arrays, State
+from dembound.motion.state import Owner, State
 
 LOOK = 100
 """Steps between two increments of slowly applied loads, and between two evaluations of the force ratio."""
@@ -37,7 +37,7 @@ HALVINGS = 12
 """Number of bisections by which the first limit on the elastic path is located."""
 
 
-class Loading:
+class Loading(Owner):
     """Applies the loads of a static stage.
 
     Parameters
@@ -47,6 +47,8 @@ class Loading:
     start : (3, n) displacements at which they have begun.
     step : s.
     """
+
+    evolving = ("_lacking", "_begun", "_steps")
 
     def __init__(self, body: StaticScene, system: DiskSystem, start: np.ndarray, step: float) -> None:
         self._body, self._system, self._start = body, system, start
@@ -91,15 +93,6 @@ class Loading:
             return False
         self._go_on_from(0.0, state)
         return True
-
-    def saved_arrays(self) -> Arrays:
-        """The slowly applied loads, and the step of their begin."""
-        return {"lacking": self._lacking, "rising": np.array([self._begun, self._steps])}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self._lacking = saved["lacking"].copy()
-        self._begun, self._steps = saved["rising"].tolist()
 
     def _go_on_from(self, share: float, state: State) -> None:
         """Leave the elastic law at a share of its path to rest."""

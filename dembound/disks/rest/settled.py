@@ -59,9 +59,8 @@ class Blocks:
         for axis, sides in enumerate(BEYOND):
             if moved is not None and set(sides) <= scene.edges.keys():  # none at the top of ground below a surface
                 shift, further = (float(moved[axis, scene.edges[side].nodes].mean()) for side in sides)
-                low[axis], high[axis] = (
-                    x + shift + x / wide[axis] * (further - shift) for x in (low[axis], high[axis])
-                )
+                ends = low[axis], high[axis]
+                low[axis], high[axis] = (x + shift + x / wide[axis] * (further - shift) for x in ends)
         return cls(scene.assembly.origin + low, (high - low) / count, count, wraps, diameter)
 
     def stress(self, found: Iterable[Piece], positions: np.ndarray) -> np.ndarray:
@@ -169,9 +168,8 @@ class Uniformity:
     @classmethod
     def restored(cls, saved: Arrays) -> Self:
         """The uniformity restored from the arrays returned by `saved_arrays`."""
-        block, place = (saved[name].copy() for name in ("block", "place"))
-        numbers = {name: float(saved[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
-        return cls(block=block, place=place, **numbers)
+        numbers: dict[str, Any] = {name: each.copy() if each.ndim else float(each) for name, each in saved.items()}
+        return cls(**numbers)
 
 
 NUMBERS = ("steps", "ratio", "mean_reaction", "mean_residual", "stress")
@@ -229,14 +227,10 @@ class Settled:
             pairs.restore(arrays_of_owner(saved, f"contacts/{part}"))
         walls, joints = arrays_of_owner(saved, "walls"), arrays_of_owner(saved, "joints")
         cracks, uniformity = arrays_of_owner(saved, "cracks"), arrays_of_owner(saved, "uniformity")
+        touching = Touching(**{name: values.copy() for name, values in walls.items()}) if walls else None
+        displacement = among(saved["displacement"], scene)
         return cls(
-            start=Start(
-                among(saved["displacement"], scene),
-                contacts,
-                bool(saved["has_history"]),
-                Touching(**{name: values.copy() for name, values in walls.items()}) if walls else None,
-                joints,
-            ),
+            start=Start(displacement, contacts, bool(saved["has_history"]), touching, joints),
             steps=int(saved["steps"]),
             ratio=float(saved["ratio"]),
             mean_reaction=float(saved["mean_reaction"]),
@@ -284,14 +278,10 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     if case.intact:
         keys["intact"] = case.intact
     if case.group:
-        places = ("region", "points", "rr_fric")
+        places, groups = ("region", "points", "rr_fric"), ((group.time, every_key(group)) for group in case.group)
         keys["group"] = [
-            {
-                key: each
-                for key, each in every_key(group).items()
-                if key in places or (group.time is None and key != "name")
-            }
-            for group in case.group
+            {key: each for key, each in group.items() if key in places or (time is None and key != "name")}
+            for time, group in groups
         ]
     if case.layer:
         keys["layer"] = [{key: each for key, each in every_key(layer).items() if key != "side"} for layer in case.layer]

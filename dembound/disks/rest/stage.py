@@ -12,8 +12,7 @@ from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import DiskScene, column_alone
-from dembound.disks.stability import largest_overlap, step_limit
-from dembound.disks.stepping.overlaps import Overlaps
+from dembound.disks.stability import Overlaps, largest_overlap, step_limit
 from dembound.disks.stepping.scene_parts import Start, contact_lists
 from dembound.disks.stepping.system import DiskSystem
 from dembound.motion.kind import OnLook, Stages, StalledError
@@ -51,6 +50,7 @@ class UntilAtRest(Tracker):
     """
 
     name = "until at rest"
+    evolving = ("due", "_best", "_best_at")
 
     def __init__(
         self, body: StaticScene, system: DiskSystem, loading: Loading, on_look: OnLook | None, stage: str
@@ -100,21 +100,26 @@ class UntilAtRest(Tracker):
         self._best, self._best_at = np.inf, state.step
 
     def _fail(self, run: Run) -> None:
-        """Raise StalledError."""
+        """Raise StalledError, with the state of the stage and advice."""
         lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
-        ended = _where_it_ended(run, self.ratio, self._enough, self._body.static.max_steps, lacking, cracks)
-        message = f"{self._stage} {ended}"
+        steps, broken = run.state.step, f"broken bonds: {len(cracks):,}\n{_lacking(run, lacking)}"
+        came, advice = "came to", "allow more with static.max_steps"
+        within = f"in {steps:,} steps"
+        if steps < self._body.static.max_steps:
+            came, advice = "stalls at", "is the body held, and can its contacts carry the load?"
+            within = f"after {steps:,} steps"
+        message = f"{self._stage} {came} an unbalanced force ratio of {self.ratio:.3g} {within}"
+        message += f", static.ratio requests {self._enough:g}; {broken}\n{advice}"
         raise StalledError(message, run, lacking.T, cracks)
 
     def saved_arrays(self) -> Arrays:
         """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
-        best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
-        return {**super().saved_arrays(), **best, **self._loading.saved_arrays()}
+        return {**super().saved_arrays(), **self._loading.saved_arrays()}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
         super().restore(saved)
-        self._best, self._best_at = float(saved["best"]), int(saved["best_at"])
+
         self._loading.restore(saved)
 
     def take_cracks(self) -> Cracks:
@@ -128,22 +133,6 @@ class UntilAtRest(Tracker):
                 pairs.push(displacement, reference=True)
         forces = self._system.forces
         return forces.last(self._contacts) + forces.of_ties(displacement) + forces.of_joints(displacement)
-
-
-def _where_it_ended(run: Run, ratio: float, enough: float, most: int, unbalanced: np.ndarray, cracks: Cracks) -> str:
-    """Lines about a stage that takes too long, with its state and advice.
-
-    enough : the force ratio at which it is over. most : number of its steps. unbalanced (2, n) N as for `_lacking`.
-    """
-    steps = run.state.step
-    facts = f"static.ratio requests {enough:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
-    if steps >= most:
-        came = f"came to an unbalanced force ratio of {ratio:.3g} in {steps:,} steps"
-        return f"{came}, {facts}\nallow more with static.max_steps"
-    return (
-        f"stalls at an unbalanced force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
-        "is the body held, and can its contacts carry the load?"
-    )
 
 
 def _lacking(run: Run, unbalanced: np.ndarray) -> str:
@@ -283,8 +272,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     assert static is not None
     body = StaticScene(scene, static)
     step = SAFETY * step_limit(body.scene, damp=static.damp, viscous=False)
-    none = np.zeros((3, body.scene.count))
-    datum = none
+    datum = none = np.zeros((3, body.scene.count))
     if start is not None:
         start = replace(start, displacement=among(start.displacement, body.scene))
         datum = start.displacement
@@ -303,14 +291,9 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     asked = None if static.stress is None or not uniform else np.array(static.stress)
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
+    touching, joints = None if system.walls is None else system.walls.touching, states_of(system.joints)
     settled = Settled(
-        start=Start(
-            among(displacement, scene),
-            system.contacts,
-            system.uses_history,
-            None if system.walls is None else system.walls.touching,
-            states_of(system.joints),
-        ),
+        start=Start(among(displacement, scene), system.contacts, system.uses_history, touching, joints),
         steps=simulation.state.step,
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,

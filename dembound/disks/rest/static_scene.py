@@ -121,7 +121,8 @@ class StaticScene:
         if self._tractions is not None:
             self.held[self._tractions.nodes] = True
         supports: Supports = self.scene.supports
-        self.held[_of_disks(supports, scene.disk_count)] = True  # dashpots have no force at rest
+        held = supports.node[supports.prescribed]  # dashpots have no force at rest
+        self.held[held[held < scene.disk_count]] = True
         self._floats = len(supports) == 0
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.disk_count, axis=1)
         across = (supports.component < 2) & supports.prescribed
@@ -201,9 +202,3 @@ def _require_loads_within(scene: DiskScene, static: DiskScene) -> None:
     said = "acts on the surface of the continuum, which the static stage is without; give it a wave, or load particles"
     if problems := [f"load.{name}: {said}" for name, on in nodes.items() if (on >= scene.disk_count).any()]:
         raise CaseError(problems)
-
-
-def _of_disks(supports: Supports, disks: int) -> np.ndarray:
-    """The disks (k,) with prescribed components."""
-    node = supports.node[supports.prescribed]
-    return node[node < disks]

@@ -18,10 +18,10 @@ from dembound.disks.stepping.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
 from dembound.kernels.fragments import broken_off
 from dembound.kernels.tables import Followers
-from dembound.motion.state import Arrays
+from dembound.motion.state import Arrays, Owner
 
 
-class Balance:
+class Balance(Owner):
     """Forces that balance the stress of a body in a reference state, the datum.
 
     Parameters
@@ -40,6 +40,11 @@ class Balance:
     bonds, on which the free field beyond no longer acts.
     """
 
+    evolving = (
+        *("force", "datum", "let_go", "_steady", "_across", "_begun", "_ended", "_torn", "_stands"),
+        *("_of_ended", "_across_ended", "_relative", "_free"),
+    )
+
     def __init__(
         self, scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
     ) -> None:
@@ -47,13 +52,12 @@ class Balance:
         self.followers = _followers(scene, force, steady, datum, across)
         self.datum = datum
         self._scene, self._steady, self._across = scene, steady, across
-        self._of_ended = 0.0
-        self._across_ended = np.zeros(())
+        self._of_ended = self._across_ended = self._free = 0.0
         self._ended, self._torn, self.let_go = np.zeros((3, scene.count), dtype=np.bool_)
         self._begun = force.copy()
         self._note_begin()
         self._carriers = carriers_of(scene)
-        self._relative, self._free = np.zeros(len(self._carriers)), np.zeros(())
+        self._relative = np.zeros(len(self._carriers))
         self._stands = np.ones(len(self._carriers), dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
@@ -65,11 +69,7 @@ class Balance:
 
         Seams no longer act on disks that they let go; what they had done there until then counts on.
         """
-        return float(self._across_ended) + float(np.sum(np.where(self.let_go, 0.0, self._across) * moved))
-
-    def add_to_loads(self, change: np.ndarray) -> None:
-        """Add forces (3, n) N to the steady ones beside those that rotate."""
-        self.followers.steady[...] += change[:2, self.followers.node]
+        return self._across_ended + float(np.sum(np.where(self.let_go, 0.0, self._across) * moved))
 
     def leave_alone(self, disks: np.ndarray) -> None:
         """Have no steady force on disks (k,) from now on, which do not move any more."""
@@ -79,29 +79,18 @@ class Balance:
 
     def saved_arrays(self) -> Arrays:
         """All arrays that change during a run, by name."""
-        kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}
-        kept |= {"datum": self.datum, "force": self.force, "of_ended": np.array(self._of_ended)}
-        kept["let_go"] = self.let_go
-        return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
+        followers = {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
+        return {**super().saved_arrays(), **followers}
 
     @classmethod
     def restored(cls, scene: DiskBody, saved: Arrays) -> Balance:
         """The balance restored from the arrays returned by `saved_arrays` in another run of the same case."""
-        balance = cls(scene, saved["force"].copy(), *(saved[name].copy() for name in _FIXED))
-        for name in _EVOLVING:
-            getattr(balance, f"_{name}")[...] = saved[name]
+        balance = cls(scene, *(saved[name].copy() for name in ("force", "steady", "datum", "across")))
+        balance.restore(saved)
         balance._note_begin()
-        balance._of_ended = float(saved["of_ended"])
-        balance.let_go[...] = saved["let_go"]
         for name in _FOLLOWING:
             getattr(balance.followers, name)[...] = saved[f"follower_{name}"]
         return balance
-
-    def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
-        """Ignore the bonds broken so far when debris is looked for; parts : of the body."""
-        for part in parts:
-            assert part.contacts is not None
-            part.contacts.note_cracks()
 
     def end_on_debris(
         self,
@@ -154,14 +143,20 @@ class Balance:
         self._leave_sides()
         places = self._scene.positions.T + self.datum[:2]
         change += carried(self._carriers, lost, places, self._ended, self.let_go, self._size, stands)
-        # the force of the last step acted until half a step before the present displacements
-        self._of_ended -= float(np.sum(change * (moved - 0.5 * step * velocity)))
-        self.force += change
-        load += change
+        self._add(change, displacement, velocity, step, load)
         followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
-        followers.steady[...] += change[:2, followers.node]
         self._relative += before - self.relative_work(displacement)
         self._free += free - self.free_work(displacement)
+
+    def _add(
+        self, change: np.ndarray, displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
+    ) -> None:
+        """Add forces (3, n) to those at rest, but not yet to those that rotate; others as of `end_on_debris`."""
+        # the force of the last step acted until half a step before the present displacements
+        self._of_ended -= float(np.sum(change * (displacement - self.datum - 0.5 * step * velocity)))
+        self.force += change
+        load += change
+        self.followers.steady[...] += change[:2, self.followers.node]
 
     def end(
         self, what: np.ndarray, displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
@@ -172,14 +167,10 @@ class Balance:
         """
         before, free = self.relative_work(displacement), self.free_work(displacement)
         change, followers = np.where(what, -self.force, 0.0), self.followers
-        # the force of the last step acted until half a step before the present displacements
-        self._of_ended -= float(np.sum(change * (displacement - self.datum - 0.5 * step * velocity)))
         self._begun[what] = 0.0
         self._note_begin()
-        self.force += change
-        load += change
+        self._add(change, displacement, velocity, step, load)
         followers.force[...] += _shares(followers.side)[:, None, :] * change[:2, followers.node]
-        followers.steady[...] += change[:2, followers.node]
         self._relative += before - self.relative_work(displacement)
         self._free += free - self.free_work(displacement)
 
@@ -195,7 +186,7 @@ class Balance:
 
         Forces at rest that come through free-field seams are included, which others balance beside unlike columns.
         """
-        return float(self._free) + float(np.sum(self._acting * (displacement - self.datum)))
+        return self._free + float(np.sum(self._acting * (displacement - self.datum)))
 
     @property
     def _acting(self) -> np.ndarray:
@@ -239,12 +230,6 @@ class Balance:
                 followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
 
 
-_FIXED = ("steady", "datum", "across")
-"""The arguments of a balance other than its forces."""
-
-_EVOLVING = ("ended", "torn", "begun", "relative", "free", "stands", "across_ended")
-"""Arrays about particles that have broken off, and of what acted on them."""
-
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 """The arrays of its followers that change."""
 
@@ -279,16 +264,16 @@ def _followers(
     members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
     node, side = _side_numbers(scene, sides)
     names = list(sides)
-    rest = datum[:2, members].copy()
+    twin, rest = np.full(len(members), -1), datum[:2, members].copy()
     if scene.twin is not None:
-        rest -= datum[:2, scene.twin[members]]
+        twin = scene.twin[members]
+        rest -= datum[:2, twin]
+    opposite = [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names]
     return Followers(
-        opposite=np.array(
-            [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names], np.int64
-        ),
+        opposite=np.array(opposite, np.int64),
         start=np.cumsum([0, *(len(nodes) for nodes in sides.values())]),
         member=members,
-        twin=np.full(len(members), -1) if scene.twin is None else scene.twin[members],
+        twin=twin,
         arm=np.concatenate([np.zeros((2, 0)), *arms], axis=1),
         node=node,
         side=side,

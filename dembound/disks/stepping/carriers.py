@@ -35,7 +35,7 @@ class RestForces:
         """Forces (3, n) of contacts and of the seam under the elastic law."""
         force = np.zeros_like(displacement)
         for part in self._disks.parts:
-            part.add_elastic_forces(displacement, force)
+            force[:, part.nodes] += part.elastic_forces(displacement)[:, part.layout.slot[part.nodes]]
         for tie in self._disks.seams:
             force[:, tie.nodes] += tie.elastic_forces(displacement)
         return force

@@ -99,33 +99,20 @@ class DampedTies(Tie):
     """
 
     name = "damped_ties"
+    evolving = ("_memory",)
 
     def __init__(self, nodes: np.ndarray, factors: np.ndarray) -> None:
-        self._nodes, self._factors = nodes, factors
+        self.nodes, self._factors = nodes, factors
         self._memory = np.zeros((len(nodes), 3, factors.shape[2]))
         self._rest = np.zeros((len(nodes), 3))
 
-    @property
-    def nodes(self) -> np.ndarray:
-        """Nodes (t,) that ties act on, ascending."""
-        return self._nodes
-
     def bundle(self, supported: np.ndarray) -> TieMemories:
         """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
-        line = np.searchsorted(supported, self._nodes)
-        return TieMemories(line, self._factors, self._memory, self._rest)
+        return TieMemories(np.searchsorted(supported, self.nodes), self._factors, self._memory, self._rest)
 
     def rest_at(self, force: np.ndarray) -> None:
         """Remember only differences from these forces (3, n) of ties on all nodes at rest."""
-        self._rest = np.ascontiguousarray(force[:, self._nodes].T)
-
-    def saved_arrays(self) -> Arrays:
-        """The memories."""
-        return {"memory": self._memory}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self._memory[...] = saved["memory"]
+        self._rest = np.ascontiguousarray(force[:, self.nodes].T)
 
 
 def layers_of(scene: DiskBody, nodes: np.ndarray) -> tuple[list[Attenuation | None], np.ndarray]:
@@ -215,19 +202,11 @@ def _crossing(scene: DiskBody, nodes: slice, time_step: float) -> Crossing:
     factors[:, 1] = share[:, None] * np.concatenate([-each[own, 1], each[other, 1]], axis=1)
     constants, row_of = elastic_constants(scene.inside) if count else (np.zeros((0, 6)), np.zeros(0, dtype=np.int64))
     slot = scene.layout.slot
-    return Crossing(
-        slot[target[first]],
-        slot[owner[first]],
-        np.append(first, len(target)).astype(np.uint32),
-        slot[neighbour].astype(np.uint32),
-        row_of[end].astype(np.uint32),
-        constants,
-        factors,
-        np.zeros((count, 3, factors.shape[2])),
-        np.zeros((count, 3)),
-        np.zeros((count, 3)),
-        np.zeros(1),
-    )
+    start = np.append(first, len(target))
+    start, near, row = (each.astype(np.uint32) for each in (start, slot[neighbour], row_of[end]))
+    memory, rest, taken = np.zeros((count, 3, factors.shape[2])), np.zeros((count, 3)), np.zeros((count, 3))
+    target, owner = slot[target[first]], slot[owner[first]]
+    return Crossing(target, owner, start, near, row, constants, factors, memory, rest, taken, np.zeros(1))
 
 
 def _contacts(scene: DiskBody, nodes: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

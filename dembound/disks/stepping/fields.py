@@ -23,18 +23,6 @@ from dembound.kernels.tables.contacts import Contacts
 from dembound.motion.part import Cracks, Part, System, Tie, joined
 
 
-def part_stress(
-    scene: DiskBody, part: DiskPart, displacement: np.ndarray, joints: Sequence[JointTie] = ()
-) -> np.ndarray:
-    """Total stress (m, 3) of one part's particles, including that of a static stage, see `particle_stress`.
-
-    displacement (3, n) m and rad. Under the history-dependent law its forces, and those of joints, are those at the
-    beginning of the last step.
-    """
-    more = joint_pieces(joints, scene, displacement)
-    return particle_stress(scene, part.stressed_pairs, displacement, part.geometry, more)[part.nodes]
-
-
 def particle_stress(
     scene: DiskBody, contacts: Contacts, displacement: np.ndarray, geometry: int, more: Iterable[Piece] = ()
 ) -> np.ndarray:
@@ -190,15 +178,15 @@ class RecordedDisks(System):
         return rest + (stress - rest) / unrelaxed(self.scene)[: len(stress), None]
 
     def _unrelaxed_stress(self, displacement: np.ndarray) -> np.ndarray:
-        """Stress (m, 3) at displacements (3, n) that have just been reached."""
-        joints = {self.disks.parts[-1].name: self.joints}  # they are in the body
-        each = [part_stress(self.scene, p, displacement, joints.get(p.name, ())) for p in self.disks.parts]
-        return np.concatenate(each)
+        """Stress (m, 3) at displacements (3, n) that have just been reached, including that of a static stage.
 
-    def _note_rest(self, datum: np.ndarray) -> None:
-        """Note the stress at rest at displacements (3, n), if it will be needed."""
-        if self.disks.are_damped and self.scene.case.output.stress:
-            self._stress_at_rest = self._unrelaxed_stress(datum)
+        Under the history-dependent law its forces, and those of joints, are those at the beginning of the last step.
+        """
+        scene, found = self.scene, []
+        for part in self.disks.parts:
+            more = joint_pieces(self.joints if part is self.disks.parts[-1] else (), scene, displacement)  # in the body
+            found.append(particle_stress(scene, part.stressed_pairs, displacement, part.geometry, more)[part.nodes])
+        return np.concatenate(found)
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""

@@ -21,28 +21,22 @@ from dembound.pairwise import P
 
 def never_elastic_again(case: DiskCase) -> str:
     """Why no static stage of a case can be followed by the elastic law; empty if that depends on the settled state."""
-    material = case.material
-    if not LAWS[material.law].has_history:
-        return f'material.law = "{material.law}" is used from the start'
-    if case.static is None:
-        return "there is no static stage"
-    if not LAWS[material.law].starts_elastic:
-        return f'contacts under material.law = "{material.law}" are stiffer the more they overlap'
-    if case.dashes_at_once:
-        return "contacts have dashpots"
-    if case.wall:
-        return "disks touch walls, which the elastic law does not include"
-    if case.rolls:
-        return "contacts without bonds resist rolling"
-    if case.relaxes:
-        return "bonds have relaxation arms, by which their ground is damped"
-    if not material.elastic_start:
-        return "material.elastic_start is false"
-    if case.begins_stressed and case.column_sides:
-        return "the stress at rest acts through the seam of the free field, which the elastic law does not include"
-    if material.locked_in is not None and any(table.needs_column for table in case.boundary.values()):
-        return "a locked-in stress acts through the seam of the free field, which the elastic law does not include"
-    return ""
+    material, law = case.material, LAWS[case.material.law]
+    locked_in = material.locked_in is not None and any(table.needs_column for table in case.boundary.values())
+    through = "acts through the seam of the free field, which the elastic law does not include"
+    reasons = (
+        (not law.has_history, f'material.law = "{material.law}" is used from the start'),
+        (case.static is None, "there is no static stage"),
+        (not law.starts_elastic, f'contacts under material.law = "{material.law}" are stiffer the more they overlap'),
+        (case.dashes_at_once, "contacts have dashpots"),
+        (case.wall, "disks touch walls, which the elastic law does not include"),
+        (case.rolls, "contacts without bonds resist rolling"),
+        (case.relaxes, "bonds have relaxation arms, by which their ground is damped"),
+        (not material.elastic_start, "material.elastic_start is false"),
+        (case.begins_stressed and case.column_sides, f"the stress at rest {through}"),
+        (locked_in, f"a locked-in stress {through}"),
+    )
+    return next((why for holds, why in reasons if holds), "")
 
 
 def elastic_again(parts: Collection[ContactList], datum: np.ndarray) -> str:

@@ -23,7 +23,6 @@ from dembound.kernels.load_factor import least_factors
 from dembound.laws.law import columns_of, in_columns
 from dembound.laws.linearpbond import BOND_LIMITS, limit_in_words, limit_lines
 from dembound.motion.kind import Finding
-from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
 from dembound.pairwise import STRAIN, of_law
 from dembound.places import is_within
@@ -46,6 +45,7 @@ class LoadFactor(Every):
     """
 
     name = "load_factor"
+    evolving = ("due", "factor", "_found")
 
     def __init__(self, case: DiskCase, system: DiskSystem) -> None:
         super().__init__(1)
@@ -94,23 +94,10 @@ class LoadFactor(Every):
         step, part, pair, limit = self._found.tolist()
         (pairs, _), layout = self._pairs[part], run.state.layout
         particles = [int(layout.node[side[pair]]) for side in (pairs.first, pairs.second)]
-        way = pairs.constants[pairs.contact_type[pair], :2]
-        return {
-            "factor": self.factor,
-            "limit": limit_in_words(limit, pairs.constants[pairs.contact_type[pair]]),
-            "time": step * run.time_step,
-            "position": (run.scene.positions[particles[0]] + 0.5 * way).tolist(),
-            "particles": particles,
-        }
-
-    def saved_arrays(self) -> Arrays:
-        """The least factor found so far with its pair, and the next step."""
-        return {**super().saved_arrays(), "factor": np.array(self.factor), "found": self._found}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        super().restore(saved)
-        self.factor, self._found = float(saved["factor"]), saved["found"].copy()
+        constants = pairs.constants[pairs.contact_type[pair]]
+        middle = (run.scene.positions[particles[0]] + 0.5 * constants[:2]).tolist()
+        found = {"factor": self.factor, "limit": limit_in_words(limit, constants), "time": step * run.time_step}
+        return found | {"position": middle, "particles": particles}
 
 
 def load_factor_of(run: Run) -> LoadFactor | None:

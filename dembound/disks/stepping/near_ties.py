@@ -18,7 +18,7 @@ from dembound.kernels.compiler.start_strain import began_with
 from dembound.kernels.contacts import BONDED, INTACT
 from dembound.kernels.tables import Contacts
 from dembound.laws.law import K
-from dembound.motion.state import Arrays, State
+from dembound.motion.state import Arrays, Owner, State
 
 TIE_DISTANCE = 2.0
 """Largest distance, in mean diameters, between the centres of a tied disk and of one that counts as near it."""
@@ -69,7 +69,7 @@ def strongest_force(scene: DiskBody) -> float:
     return max(forces)
 
 
-class NearTies:
+class NearTies(Owner):
     """Looks for contacts near ties that have opened or slid, at steps at which the loop returns.
 
     A contact that slides, or opens under shear, keeps its slip, so it is found then. One that opens without any shear
@@ -84,6 +84,8 @@ class NearTies:
     step : (4,) at which it was first found near each of `SIDES`, −1 for not yet; place : (4, 2) m, the middle of the
     pair that was then the farthest from its elastic state, as built.
     """
+
+    evolving = ("_slip", "step", "place")
 
     def __init__(self, scene: DiskBody, contacts: ContactList) -> None:
         assembly, constants = contacts.assembly, contacts.bonds[contacts.kind]
@@ -135,14 +137,6 @@ class NearTies:
             listed, at = contacts.find(self._pairs[:, 0], self._pairs[:, 1], self._vectors)
             self._found = contacts.arrays, contacts.live[at], listed
         return self._found[1:]
-
-    def saved_arrays(self) -> Arrays:
-        """Slip at the start, and the findings so far."""
-        return {"slip": self._slip, "step": self.step, "place": self.place}
-
-    def restore(self, saved: Arrays) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        self._slip, self.step, self.place = (saved[name].copy() for name in ("slip", "step", "place"))
 
     def describe(self, side: str, time_step: float) -> dict[str, Any] | None:
         """Time (s) and place (m) of the first opening or slip near the ties of a side, for a summary; None for none."""

@@ -18,19 +18,8 @@ from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contact_measures import strain_energy
 from dembound.kernels.contacts import LOST, REFERENCE, SLID
 from dembound.kernels.relaxing import arms_energy
-from dembound.kernels.tables import (
-    Arms,
-    Bonded,
-    Contacts,
-    DampedLinks,
-    LaneBonded,
-    LaneRows,
-    Links,
-    Relaxing,
-    Seam,
-    SeamEnds,
-    WatchedLinks,
-)  # fmt: skip
+from dembound.kernels.tables import Contacts, DampedLinks, LaneRows, Seam, SeamEnds
+from dembound.kernels.tables.laws import Arms, Bonded, LaneBonded, Links, Relaxing, WatchedLinks
 from dembound.motion.part import NO_CRACKS, Cracks, Part, Tie
 from dembound.motion.state import Arrays, Layout, State
 from dembound.packings.column import Seam as ColumnSeam
@@ -57,7 +46,8 @@ class DiskPart(Part):
     ----------
     uses_history : whether the history-dependent law is in use; before, a linear law replaces it. watches : whether the
     loop returns before a contact leaves the linear law. stops_at_breaks : whether it returns after a step in which a
-    bond of this part broke. dashes : whether dashpots of contacts act, where the material has some.
+    bond of this part broke. dashes : whether dashpots of contacts act, where the material has some. fastest : (chunks,)
+    m/s, speeds of its disks after a step under the history-dependent law; supports move others.
     """
 
     def __init__(
@@ -73,20 +63,15 @@ class DiskPart(Part):
         memories: DiskMemories | None = None,
         arms: Arms | None = None,
     ) -> None:
-        self.name = name
-        self.ground = ground
-        self.assembly = assembly
-        self.nodes, self.layout = nodes, layout
+        self.name, self.nodes = name, nodes
+        self.ground, self.assembly, self.rows, self.layout = ground, assembly, rows, layout
         self.contacts, self.at_rest, self.memories, self.arms = contacts, at_rest, memories, arms
-        self.uses_history = False
-        self.watches = True
-        self.stops_at_breaks = False
-        self.dashes = True
-        self.rows = rows
-        self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self.uses_history = self.stops_at_breaks = False
+        self.watches = self.dashes = True
+        self.fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
         self._law: tuple[tuple[Any, ...], NamedTuple] | None = None
         self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, LOST))
-        self._links = Links(rows, self._fastest, self._damped)
+        self._links = Links(rows, self.fastest, self._damped)
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
@@ -130,7 +115,7 @@ class DiskPart(Part):
     @property
     def _space(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Work space of the law."""
-        return self._way, self._fastest, self._damped, self._lost
+        return self._way, self.fastest, self._damped, self._lost
 
     def _in_rows(self, contacts: ContactList, law: Bonded) -> Bonded | LaneBonded:
         """The law in rows of copies, if its disks are."""
@@ -145,11 +130,6 @@ class DiskPart(Part):
         """List the pairs anew if some may be missing."""
         if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.u):
             self.contacts.list_anew(state.u, state.v)
-
-    def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
-        """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""
-        force = self.elastic_forces(displacement)
-        total[:, self.nodes] += force[:, self.layout.slot[self.nodes]]
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, slots) of the elastic law on its disks at displacements (3, n)."""
@@ -191,11 +171,6 @@ class DiskPart(Part):
             self.memories.restore(saved)
 
     @property
-    def fastest(self) -> np.ndarray:
-        """Speeds (chunks,) m/s of its disks after a step under the history-dependent law; supports move others."""
-        return self._fastest
-
-    @property
     def geometry(self) -> int:
         """Geometry of the pairs under the law in use, see kernels/contacts.py."""
         if self.contacts is None:
@@ -231,8 +206,7 @@ class FreeFieldSeam(Tie):
     """
 
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
-        self.seam = seam
-        self.column = column
+        self.seam, self.column, self.nodes = seam, column, seam.node
         self._let_go = np.zeros(len(seam.twin), dtype=np.bool_)
         self._constants, row_of = elastic_constants(column.ground)
         slot = column.layout.slot
@@ -245,11 +219,6 @@ class FreeFieldSeam(Tie):
         """Exert no forces from now on on the disks (n,) bool that have broken off or lost all their bonds."""
         if (disks[: len(self._let_go)] != self._let_go).any():
             self._let_go, self._ends = disks[: len(self._let_go)].copy(), None
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Particles (k,) of the body that have contacts beyond a side, ascending."""
-        return self.seam.node
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """The rows of contacts across the seam, under the law in use in the column."""

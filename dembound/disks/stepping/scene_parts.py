@@ -130,13 +130,8 @@ class WallTie(Tie):
     """
 
     def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
-        self._surroundings, self._layout = surroundings, layout
+        self._surroundings, self._layout, self.nodes = surroundings, layout, surroundings.tied
         self._last: tuple[np.ndarray, WallTies] | None = None
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Disks and nodes of the continuum (k,) that it acts on, ascending."""
-        return self._surroundings.tied
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
@@ -154,16 +149,11 @@ class TwinTie(Tie):
     """
 
     def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
-        self._disks, self._twin = disks, twin
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Disks (k,) that it acts on, ascending."""
-        return self._disks
+        self.nodes, self._twin = disks, twin
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """The arrays of the tie for the kernels; supported (s,) are all nodes of the support table, ascending."""
-        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
+        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self.nodes], self.nodes)))
 
 
 def disks_on_foot(scene: DiskBody) -> np.ndarray:
@@ -255,11 +245,6 @@ class DiskParts:
         self.damped_ties = None if time_step is None else ties_remembering(scene, tied, time_step)
 
     @property
-    def law_name(self) -> str:
-        """Name of the law in use, for reports."""
-        return self.parts[-1].law_name
-
-    @property
     def uses_history(self) -> bool:
         """Whether the history-dependent law is in use."""
         return all(part.uses_history for part in self.parts)
@@ -273,11 +258,6 @@ class DiskParts:
         """Set all contacts to the state of the elastic law at displacements (3, n)."""
         for pairs in self.contacts.values():
             pairs.start_from_displacements(displacement)
-
-    def use_history(self) -> None:
-        """Use the history-dependent law in all parts from now on."""
-        for part in self.parts:
-            part.uses_history = True
 
     @property
     def are_damped(self) -> bool:
@@ -294,8 +274,3 @@ class DiskParts:
             for tie in self.seams if self.remembers_seams else ():
                 force[:, tie.nodes] += tie.elastic_forces(displacement)
             self.damped_ties.rest_at(force)
-
-    def stop_at_breaks(self, stops: bool) -> None:
-        """Set whether the loop returns after a step in which a bond broke."""
-        for part in self.parts:
-            part.stops_at_breaks = stops

@@ -21,7 +21,7 @@ from dembound.disks.columns import COLUMNS
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.stepping.balance import Balance
 from dembound.errors import RunError
-from dembound.motion.state import Arrays
+from dembound.motion.state import Owner
 from dembound.words import percent
 
 WARNS, STOPS = 0.05, 0.5
@@ -49,7 +49,7 @@ COLUMN = "free-field column"
 """Name of the column among the places that cracks would have reached."""
 
 
-class SideWatch:
+class SideWatch(Owner):
     """Measures, when the ledger is written, what forces at rest do at the sides.
 
     Attributes
@@ -57,8 +57,10 @@ class SideWatch:
     work : largest work so far, over the energy that came in until now, see `WARNS`, with its side and time. ended :
     share of forces on disks that have broken off. turn : largest rotation so far (rad), with its side and time.
     reached : by side, number of bonds of its intact zone that have reached their strength, and time (s) at which the
-    first was found.
+    first was found. sides : of the carriers of its `Balance`.
     """
+
+    evolving = ("_work", "_turn", "_reached", "ended", "_energy")
 
     def __init__(self, scene: DiskBody, time_step: float) -> None:
         self._scene, self._time_step = scene, time_step
@@ -68,7 +70,7 @@ class SideWatch:
         self._places = [*scene.intact_zones, COLUMN]
         self._reached = np.full((len(self._places), 2), -1)  # count, step of the first
         self._reached[:, 0] = 0
-        self._sides: list[str] = []
+        self.sides: list[str] = []
         case = scene.case  # on walls alone a body leaves nothing at its sides but what was not yet in balance
         self._bears = not case.wall or any(keeps_forces(case.static, side, case.side(side)) for side in scene.edges)
 
@@ -85,7 +87,7 @@ class SideWatch:
 
         Raises RunError if forces at rest have done more than `STOPS` of the energy.
         """
-        self._sides = balance.sides
+        self.sides = balance.sides
         self._note_reached(contacts, step)
         self.ended = balance.share_of_ended() if self._bears else 0.0
         turn, at = balance.largest_turn(displacement) if self._bears else (0.0, 0)
@@ -100,9 +102,12 @@ class SideWatch:
             self._work[:] = size, most, step
         self._energy = energy
         if size > STOPS * energy:
+            _, number, since = self._work
             raise RunError(
-                f"{self._worked()}, {percent(size / energy)} of the energy that came in or was stored at rest: "
-                f"the ground at this side has broken, and what the static stage left there has become a motor; {CURE}"
+                f"boundary.{self.sides[int(number)]}: until t = {since * self._time_step:.4g} s forces at rest have "
+                f"done work on disks that moved away from this side, or turned there, {percent(size / energy)} of the "
+                "energy that came in or was stored at rest: the ground at this side has broken, and what the static "
+                f"stage left there has become a motor; {CURE}"
             )
 
     def _note_reached(self, contacts: Mapping[str, ContactList], step: int) -> None:
@@ -121,44 +126,19 @@ class SideWatch:
                     before = self._reached[row, 1]
                     self._reached[row] = count, step if before < 0 else before
 
-    def _worked(self) -> str:
-        """The work of forces at rest in words."""
-        _, at, step = self._work
-        return (
-            f"boundary.{self._sides[int(at)]}: until t = {step * self._time_step:.4g} s forces at rest have done work "
-            "on disks that moved away from this side, or turned there"
-        )
-
     def describe(self) -> dict[str, Any]:
         """The findings as plain JSON values, for a summary; times in s."""
-        return {
-            "work": self._described(self._work, self._energy),
-            "turn": self._described(self._turn),
-            "ended": self.ended,
-            "reached": {
-                place: {"bonds": int(count), "time": float(step * self._time_step)}
-                for place, (count, step) in zip(self._places, self._reached.tolist(), strict=True)
-                if count > 0
-            },
-        }
+        each = zip(self._places, self._reached.tolist(), strict=True)
+        reached = {at: {"bonds": n, "time": float(step * self._time_step)} for at, (n, step) in each if n > 0}
+        work, turn = self._described(self._work, self._energy), self._described(self._turn)
+        return {"work": work, "turn": turn, "ended": self.ended, "reached": reached}
 
     def _described(self, found: np.ndarray, unit: float = 1.0) -> dict[str, Any] | None:
         """Size over a unit, side and time of a finding; None for none."""
         size, at, step = found.tolist()
-        return (
-            {"size": size / unit, "side": self._sides[int(at)], "time": step * self._time_step} if size > 0.0 else None
-        )
-
-    def saved_arrays(self) -> Arrays:
-        """The findings so far."""
-        numbers = {"ended": np.array(self.ended), "energy": np.array(self._energy)}
-        return {"work": self._work, "turn": self._turn, "reached": self._reached, **numbers}
-
-    def restore(self, saved: Arrays, sides: list[str]) -> None:
-        """Restore the arrays returned by `saved_arrays` in another run of the same case; sides : of its `Balance`."""
-        self._sides = sides
-        self._work[:], self._turn[:], self._reached[:] = (saved[name] for name in ("work", "turn", "reached"))
-        self.ended, self._energy = float(saved["ended"]), float(saved["energy"])
+        if size <= 0.0:
+            return None
+        return {"size": size / unit, "side": self.sides[int(at)], "time": step * self._time_step}
 
 
 CURE = (

@@ -69,15 +69,13 @@ class DiskSystem(RecordedDisks):
             ties.append(self._bearing)
         if scene.outside is not None and scene.outside.body.mesh.slit and not settling:
             ties.append(JumpTie(scene.outside, scene.feet, scene.layout, time_step))
-        super().__init__(
-            scene,
-            disks,
-            joints,
-            grids(scene, time_step, damped=not settling),
-            ties,
-            scene.steady_load if load is None else load,
-            _walls(scene, time_step, disks, start, settling=settling),
-        )
+        touched: WallPart | None = None
+        if scene.case.wall:
+            displacement = np.zeros((3, scene.count)) if start is None else start.displacement
+            touching = None if start is None else start.touching
+            touched = WallPart(scene, time_step, disks.parts[-1].fastest, displacement, touching, stand=settling)
+        beyond = grids(scene, time_step, damped=not settling)
+        super().__init__(scene, disks, joints, beyond, ties, scene.steady_load if load is None else load, touched)
         if not settling:
             self.drag = drag_rates(scene)
         self.forces = RestForces(scene, disks, joints, self.walls)
@@ -106,7 +104,7 @@ class DiskSystem(RecordedDisks):
     @property
     def law_name(self) -> str:
         """Name of the law of the disks in use, for reports."""
-        return self.disks.law_name
+        return self.disks.parts[-1].law_name
 
     def begin(self, state: State) -> None:
         """Choose the first law, and the steady forces that belong to it."""
@@ -139,7 +137,7 @@ class DiskSystem(RecordedDisks):
         self.work_before -= float(np.sum(change * (state.displacement - 0.5 * step * state.velocity - state.datum)))
         self.apply(load)
         if self.balance is not None:
-            self.balance.add_to_loads(change)
+            self.balance.followers.steady[...] += change[:2, self.balance.followers.node]
 
     def react(self, why: int, steps: int, state: State) -> None:
         """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces.
@@ -197,11 +195,13 @@ class DiskSystem(RecordedDisks):
             state.displacement, state.velocity = turned_as_a_whole(
                 self.scene, state.displacement, state.velocity, state.datum
             )
-        self.disks.use_history()
+        for part in self.disks.parts:
+            part.uses_history = True
         if fresh:
             self.disks.adopt(state.displacement)
-        if self.balance is not None:
-            self.balance.count_breaks_from(self.disks.parts)
+        if self.balance is not None:  # debris is looked for by the bonds that break from now on
+            for pairs in self.contacts.values():
+                pairs.note_cracks()
         if before is not None:
             state.work[:, 4] += self._potential(state) - before
         if fresh:
@@ -261,8 +261,8 @@ class DiskSystem(RecordedDisks):
         self.balance = Balance.restored(self.scene, kept) if kept else None
         if self.near_ties is not None:
             self.near_ties.restore(arrays_of_owner(saved, "near_ties"))
-        sides = [] if self.balance is None else self.balance.sides
-        self.side_watch.restore(arrays_of_owner(saved, "side_watch"), sides)
+        self.side_watch.restore(arrays_of_owner(saved, "side_watch"))
+        self.side_watch.sides = [] if self.balance is None else self.balance.sides
         self._set_balance_in_use()
         self._let_go()
         self._begin_at_rest()
@@ -320,12 +320,14 @@ class DiskSystem(RecordedDisks):
         if self.balance is not None and (self.disks.are_damped or self.disks.damped_ties is not None):
             datum = self.balance.datum
             self.disks.rest_at(datum, self.forces.of_ties(datum))
-            self._note_rest(datum)
+            if self.disks.are_damped and self.scene.case.output.stress:
+                self._stress_at_rest = self._unrelaxed_stress(datum)
 
     def _set_balance_in_use(self) -> None:
         """Let the loop return after a break if balancing forces may have to end, and rotate them if their law does."""
         balance = self.balance
-        self.disks.stop_at_breaks(balance is not None)
+        for part in self.disks.parts:
+            part.stops_at_breaks = balance is not None
         follows = self.uses_history and self.disks.geometry_follows
         self.turning = balance.followers if balance is not None and follows else None
 
@@ -337,14 +339,3 @@ class DiskSystem(RecordedDisks):
         """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
         steady = float(np.sum(self.load * (state.displacement - state.datum)))
         return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)
-
-
-def _walls(
-    scene: DiskBody, time_step: float, disks: DiskParts, start: Start | None, *, settling: bool
-) -> WallPart | None:
-    """The walls of a scene with the contacts of its start; None without any."""
-    if not scene.case.wall:
-        return None
-    displacement = np.zeros((3, scene.count)) if start is None else start.displacement
-    touching = None if start is None else start.touching
-    return WallPart(scene, time_step, disks.parts[-1].fastest, displacement, touching, stand=settling)

@@ -158,6 +158,7 @@ class WallPart(Part):
     name = "walls"
     nodes = slice(0, 0)
     law_name = "walls"
+    evolving = ("_moved", "_way", "_step")
 
     def __init__(
         self,
@@ -170,17 +171,26 @@ class WallPart(Part):
         stand: bool,
     ) -> None:
         walls, case = scene.case.wall, scene.case
-        self._scene, self._time_step, self._fastest = scene, time_step, fastest
+        self._scene = scene
         self._lines = Lines.of(walls)
         steps = 1 if stand else int(np.ceil(case.run.duration / time_step)) + 2
         self._path = np.zeros((1, len(walls), 2)) if stand else path_of(scene, steps, time_step)
-        self._follow, self._leader, self._share = leaders(scene)
-        self._given = np.array([[wall.kn or 0.0, wall.ks or 0.0] for wall in walls])
-        self._friction, self._rolling = np.array([[wall.fric, wall.rr_fric] for wall in walls]).T.copy()
-        self._dashpot = np.array([2.0 * wall.dp_nratio for wall in walls])
         self._record = np.zeros((ROWS, len(walls), 4))
         self._moved, self._way, self._step = np.zeros(2), np.zeros(2), np.zeros(1, dtype=np.int64)
-        self._lost, self._total = np.zeros((CHUNKS, kernel.LOST)), np.zeros((CHUNKS, len(walls), 2))
+        friction, rolling = np.array([[wall.fric, wall.rr_fric] for wall in walls]).T.copy()
+        self._constant = dict(zip(("follow", "leader", "share"), leaders(scene), strict=True)) | {
+            "ends": self._lines.ends,
+            "wall": self._lines.wall,
+            "given": np.array([[wall.kn or 0.0, wall.ks or 0.0] for wall in walls]),
+            "friction": friction,
+            "rolling": rolling,
+            "dashpot": np.array([2.0 * wall.dp_nratio for wall in walls]),
+            "fastest": fastest,
+            "lost": np.zeros((CHUNKS, kernel.LOST)),
+            "total": np.zeros((CHUNKS, len(walls), 2)),
+            "path": self._path,
+            "record": self._record,
+        }
         known = touching or Touching(np.zeros(0, dtype=np.int64), np.zeros((0, contacts.MOST, contacts.KEPT)))
         slots = scene.layout.slot[known.disk]
         order = np.argsort(slots)
@@ -197,14 +207,8 @@ class WallPart(Part):
         moduli = [each.moduli for each in scene.inside.materials]
         layer = scene.inside.layer_of(place)
         kn, kratio = (np.array(each)[layer] for each in ([2.0 * m.emod for m in moduli], [m.kratio for m in moduli]))
-        return {
-            "slot": slot[order],
-            "place": np.ascontiguousarray(place.T),
-            "radius": scene.assembly.radii[disks],
-            "mass": scene.mass[disks],
-            "spring": kn,
-            "kratio": kratio,
-        }
+        found = {"slot": slot[order], "place": np.ascontiguousarray(place.T), "radius": scene.assembly.radii[disks]}
+        return found | {"mass": scene.mass[disks], "spring": kn, "kratio": kratio}
 
     def _list(self, u: np.ndarray, step: int, slots: np.ndarray, kept: np.ndarray) -> None:
         """List the disks near walls before a step, at displacements (3, slots).
@@ -234,26 +238,13 @@ class WallPart(Part):
         edges = np.arange(CHUNKS + 1) * self._scene.layout.count // CHUNKS
         return Walls(
             **of,
+            **self._constant,
             bound=np.searchsorted(of["slot"], edges).astype(np.int64),
             start=start,
             segment=segment,
-            ends=self._lines.ends,
-            wall=self._lines.wall,
-            given=self._given,
-            friction=self._friction,
-            rolling=self._rolling,
-            dashpot=self._dashpot,
-            path=self._path,
-            follow=self._follow,
-            leader=self._leader,
-            share=self._share,
-            fastest=self._fastest,
             kept=kept,
             force=np.zeros((3, len(near))),
             load=np.zeros((3, len(near))),
-            lost=self._lost,
-            total=self._total,
-            record=self._record,
             moved=self._moved,
             way=self._way,
             step=self._step,
@@ -324,23 +315,12 @@ class WallPart(Part):
 
     def saved_arrays(self) -> Arrays:
         """The list of disks with their contacts, for a checkpoint."""
-        walls = self._walls
-        return {
-            "slot": walls.slot,
-            "start": walls.start,
-            "segment": walls.segment,
-            "kept": walls.kept,
-            "force": walls.force,
-            "moved": self._moved,
-            "way": self._way,
-            "step": self._step,
-            "path": self._path[self._rows_now],
-        }
+        listed = {name: getattr(self._walls, name) for name in ("slot", "start", "segment", "kept", "force")}
+        return {**super().saved_arrays(), **listed, "path": self._path[self._rows_now]}
 
     def restore(self, saved: Arrays) -> None:
         """Restore the arrays returned by `saved_arrays` in another run of the same case."""
-        for name in ("moved", "way", "step"):
-            getattr(self, f"_{name}")[...] = saved[name]
+        super().restore(saved)
         self._path[self._rows_now] = saved["path"]
         near = np.searchsorted(self._disks["slot"], saved["slot"])
         self._walls = self._listed(near, *(saved[name].copy() for name in ("start", "segment", "kept")))

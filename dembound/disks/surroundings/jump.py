@@ -31,11 +31,7 @@ class JumpTie(Tie):
     def __init__(self, outside: Surroundings, feet: tuple[Surroundings, ...], layout: Layout, time_step: float) -> None:
         self._outside, self._feet, self._layout, self._time_step = outside, feet, layout, time_step
         self._last: tuple[np.ndarray, Jump] | None = None
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Nodes (k,) on both sides of the slit that move, ascending."""
-        return nodes_on_slit(self._outside)
+        self.nodes = nodes_on_slit(outside)
 
     @cached_property
     def _at_rest(self) -> Jump:

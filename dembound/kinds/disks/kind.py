@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from dembound.casefile.disks import SCHEMA, DiskCase
-from dembound.disks.changes import Changes, require_inner_holes, times_of
+from dembound.disks.changes import Changes, Membranes, require_inner_holes, times_of
 from dembound.disks.contacts.pairs import first_break
 from dembound.disks.debris import Rest
 from dembound.disks.intact import require_room
@@ -20,13 +20,11 @@ from dembound.disks.pressure import follows, in_run
 from dembound.disks.reduced import reduced
 from dembound.disks.rest.settled import Settled, settling_keys
 from dembound.disks.rest.stage import require_stages, settle, stage_names
-from dembound.disks.rotating_pressure import Membranes
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
-from dembound.disks.stability import choose_step, largest_overlap
+from dembound.disks.stability import Overlaps, choose_step, largest_overlap
 from dembound.disks.step_cost import slower
 from dembound.disks.stepping.load_factor import LoadFactor, least_load_factor
-from dembound.disks.stepping.overlaps import Overlaps
 from dembound.disks.stepping.system import DiskSystem
 from dembound.disks.trials import trials_of_disks
 from dembound.disks.watches import FarDisks, Turns
