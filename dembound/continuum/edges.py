@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -84,24 +83,14 @@ def traction_in(mesh: Mesh, region: Box, depth: Mapping[str, float | np.ndarray]
     parts = [_part(mesh, side, region, depth.get(side, 0.0)) for side in SIDES if is_free(mesh, side)]
     nodes = [np.zeros(0, dtype=np.int64), *(part.node.ravel() for part in parts)]
     node, place = np.unique(np.concatenate(nodes), return_inverse=True)
-    forces = np.concatenate([np.zeros(0), *(part.force.ravel() for part in parts)])
+    forces = np.concatenate([np.zeros(0), *(part.share.ravel() for part in parts)])
     length, least = sum(part.length for part in parts), max((part.least for part in parts), default=0.0)
     share = np.bincount(place, forces, len(node)) / (length or 1.0)
     return Traction(node, share, length, least, any(part.absorbs for part in parts))
 
 
-class _Part(NamedTuple):
-    """A traction of 1 N/m on one side: nodes (q, N), forces on them (q, N) N; other attributes of `Traction`."""
-
-    node: np.ndarray
-    force: np.ndarray
-    length: float
-    least: float
-    absorbs: bool
-
-
-def _part(mesh: Mesh, side: str, region: Box, depth: float | np.ndarray) -> _Part:
-    """The part of a side in a region."""
+def _part(mesh: Mesh, side: str, region: Box, depth: float | np.ndarray) -> Traction:
+    """The traction of 1 N/m on the part of a side in a region: nodes (q, N), and as shares the forces on them, N."""
     axis, end = normal_axis(side), int(is_far(side))
     along, near = 1 - axis, ROUNDING * float(mesh.size.max())
     element, node = elements_at(mesh, side), nodes_at(mesh, side)
@@ -115,7 +104,7 @@ def _part(mesh: Mesh, side: str, region: Box, depth: float | np.ndarray) -> _Par
     node, begin, size, first, last = (values[kept] for values in (node, begin, size, first, last))
     force = size[:, None] * _integrals(mesh, (first - begin) / size, (last - begin) / size)
     reaches = bool((inside & absorbs).any())
-    return _Part(node, force, float(np.sum(last - first)), float(size.max(initial=0.0)), reaches)
+    return Traction(node, force, float(np.sum(last - first)), float(size.max(initial=0.0)), reaches)
 
 
 def _integrals(mesh: Mesh, first: np.ndarray, last: np.ndarray) -> np.ndarray:

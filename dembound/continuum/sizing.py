@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.continuum.medium import Ground, Medium, layered
+from dembound.continuum.medium import Ground, layered
 from dembound.continuum.mesh import Mesh
 from dembound.waves.wave import Wave
 
@@ -120,12 +120,8 @@ def cutoff(signal: Signal, share: float = SHARE) -> float:
 @lru_cache(maxsize=64)
 def slowest(ground: Ground) -> float:
     """Speed (m/s) of the slowest plane waves of all directions, in the slowest of layers."""
-    return min(_slowest_in(medium) for medium in layered(ground).media)
-
-
-def _slowest_in(medium: Medium) -> float:
-    """Speed (m/s) of the slowest plane waves of one medium."""
-    return min(float(medium.plane_waves((math.cos(a), math.sin(a)))[0][0]) for a in np.linspace(0.0, math.pi, 37))
+    ways = [(math.cos(angle), math.sin(angle)) for angle in np.linspace(0.0, math.pi, 37)]
+    return min(float(medium.plane_waves(way)[0][0]) for medium in layered(ground).media for way in ways)
 
 
 def fastest(ground: Ground) -> float:
@@ -287,13 +283,7 @@ class GridSizes:
     @property
     def counts(self) -> dict[str, float]:
         """Numbers of all things that take memory, see `motion.memory.BYTES`."""
-        row = self.order + 1
-        return {
-            "node": self.nodes,
-            "element": self.elements,
-            "row": row * self.elements,
-            "point": row**2 * self.elements,
-            "rim": 4 * self.order * self.elements,
-            "absorbing_row": row * self.absorbing,
-            "absorbing_point": row**2 * self.absorbing,
-        }
+        row, rim = float(self.order + 1), 4 * self.order * self.elements
+        every = {"element": self.elements, "row": row * self.elements, "point": row**2 * self.elements, "rim": rim}
+        layers = {"absorbing_row": row * self.absorbing, "absorbing_point": row**2 * self.absorbing}
+        return {"node": self.nodes} | every | layers

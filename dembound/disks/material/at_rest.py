@@ -185,9 +185,9 @@ def _level_stress(case: DiskCase, ground: PackedMaterial, surface: np.ndarray | 
 
 def _with_sliding(ground: PackedMaterial, at_rest: StressAtRest) -> StressAtRest:
     """A stress at rest, with whether contacts slide under it, and whether the packing bears it."""
-    zones = (
-        [(each.material, each.layer) for each in ground.zones] if isinstance(ground, LayeredGround) else [(ground, 0)]
-    )
+    zones = [(ground, 0)]
+    if isinstance(ground, LayeredGround):
+        zones = [(each.material, each.layer) for each in ground.zones]
     under = [(material, stress) for material, layer in zones for stress in at_rest.ends(layer)[1]]
     if all(
         within_friction(*each.stiffnesses(each.contact_constants), each.moduli.fric, pair_forces(each) @ stress)
@@ -303,9 +303,8 @@ def stressed(
     zones = ground.zone_materials
     linear = [] if at_rest.slides else [pair_forces(each) for each in zones]
     found, slips = np.empty((len(used), types, constants.shape[1])), np.zeros((len(used), 2, len(middle)))
-    for own, slip, (number, pairing) in zip(
-        found, slips, zip(*np.divmod(used, len(ground.pairings)), strict=True), strict=True
-    ):
+    each_used = zip(*np.divmod(used, len(ground.pairings)), strict=True)
+    for own, slip, (number, pairing) in zip(found, slips, each_used, strict=True):
         own[:] = constants[pairing * types : (pairing + 1) * types]
         x, heights = begin[number, 0] + across, begin[number, 1] + middle
         between = ground.pairings[pairing]

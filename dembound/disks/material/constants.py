@@ -129,9 +129,8 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
     first, second = brick.radii[brick.pairs].T
     found = []
     for pairing in ground.pairings:
-        constants = ground.pair_constants(
-            (first, second), brick.vectors, pairing, gaps_close=gaps_close, locked_in=locked_in
-        )
+        own = (first, second), brick.vectors, pairing
+        constants = ground.pair_constants(*own, gaps_close=gaps_close, locked_in=locked_in)
         half = constants.copy()
         half[:, : ground.law.width] *= [each.in_half for each in ground.law.columns]
         found += [constants, half]

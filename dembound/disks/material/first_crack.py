@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.material.constants import strength_of
 from dembound.disks.material.homogenise import Network
 from dembound.disks.material.packed_material import PackedMaterial
-from dembound.laws import Springs, Stiffness
+from dembound.laws import Springs
 from dembound.laws.law import touching
 
 ROUNDS = 60
@@ -79,14 +80,9 @@ def _strained(
 
     parts : of the normal and shear springs of contacts that act, (b,) each.
     """
-    own = ground.stiffness
-    stiffness = Stiffness(
-        normal=parts[0] * springs.contact_normal + springs.bond_normal,
-        shear=parts[1] * springs.contact_shear + springs.bond_shear,
-        bending=springs.bending,
-        arm_i=own.arm_i,
-        arm_j=own.arm_j,
-    )
+    normal = parts[0] * springs.contact_normal + springs.bond_normal
+    shear = parts[1] * springs.contact_shear + springs.bond_shear
+    stiffness = replace(ground.stiffness, normal=normal, shear=shear, bending=springs.bending)
     network = Network.of_brick(ground.brick, stiffness)
     gradients = network.gradient_matrix()[:, :3]
     elongations = gradients + network.motion_matrix() @ network.relaxed(gradients)

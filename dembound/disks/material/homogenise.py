@@ -82,13 +82,9 @@ class Network(NamedTuple):
         """Elongations (3b, 4) per unit mean gradient."""
         c, s = self.directions
         dx, dy = self.vectors.T
-        return np.concatenate(
-            [
-                np.stack([c * dx, s * dy, c * dy, s * dx], axis=1),
-                np.stack([-s * dx, c * dy, -s * dy, c * dx], axis=1),
-                np.zeros((len(dx), 4)),
-            ]
-        )
+        normal = np.stack([c * dx, s * dy, c * dy, s * dx], axis=1)
+        shear = np.stack([-s * dx, c * dy, -s * dy, c * dx], axis=1)
+        return np.concatenate([normal, shear, np.zeros((len(dx), 4))])
 
     def relaxed(self, elongations: np.ndarray, held: tuple[int, ...] = (), faint: float = 0.0) -> np.ndarray:
         """Motions (3n, k) of least energy in addition to elongations (3b, k), with some components held.

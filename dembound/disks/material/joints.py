@@ -43,13 +43,8 @@ def corrected(
 def _scaled(moduli: Moduli, normal: float, shear: float) -> Moduli:
     """Moduli with all normal and bending springs, and all shear springs, multiplied by factors."""
     ratio = normal / shear
-    return replace(
-        moduli,
-        emod=moduli.emod * normal,
-        pb_emod=moduli.pb_emod * normal,
-        kratio=moduli.kratio * ratio,
-        pb_kratio=moduli.pb_kratio * ratio,
-    )
+    stiff = replace(moduli, emod=moduli.emod * normal, pb_emod=moduli.pb_emod * normal)
+    return replace(stiff, kratio=moduli.kratio * ratio, pb_kratio=moduli.pb_kratio * ratio)
 
 
 def _factors(material: PackedMaterial, targets: np.ndarray) -> tuple[float, float]:
@@ -57,14 +52,9 @@ def _factors(material: PackedMaterial, targets: np.ndarray) -> tuple[float, floa
     if not targets.any():
         return 1.0, 1.0
     moving = [1 - component for component in (1, 0) if component not in material.held]  # P along y, S along x
-    logarithms = [
-        -np.log(compliances(each)[::-1])
-        for each in (
-            material,
-            replace(material, moduli=_scaled(material.moduli, 1.0 + SLIGHT, 1.0)),
-            replace(material, moduli=_scaled(material.moduli, 1.0, 1.0 + SLIGHT)),
-        )
-    ]
-    slopes = np.column_stack([each - logarithms[0] for each in logarithms[1:]]) / np.log1p(SLIGHT)
+    changed = [_scaled(material.moduli, *each) for each in ((1.0 + SLIGHT, 1.0), (1.0, 1.0 + SLIGHT))]
+    trials = [material, *(replace(material, moduli=moduli) for moduli in changed)]
+    own, *others = (-np.log(compliances(each)[::-1]) for each in trials)
+    slopes = np.column_stack([each - own for each in others]) / np.log1p(SLIGHT)
     normal, shear = np.exp(np.linalg.lstsq(slopes[moving], targets[moving], rcond=1e-6)[0])
     return float(normal), float(shear)

@@ -111,7 +111,7 @@ class LayeredGround(PackedMaterial):
         """Masses (n,) kg and moments of inertia (n,) kg·m² of an assembly's disks."""
         zone, disk = self.zone_of(assembly.positions), assembly.brick_particle
         mass, inertia = (
-            np.stack([getattr(each.material, name) for each in self.zones]) for name in ("mass", "inertia")
+            np.stack([getattr(each, name) for each in self.zone_materials]) for name in ("mass", "inertia")
         )
         return mass[zone, disk], inertia[zone, disk]
 
@@ -154,16 +154,9 @@ class LayeredGround(PackedMaterial):
         ends = np.stack([np.broadcast_to(zone, len(vectors)) for zone in zones], axis=1)
         for pair in np.unique(ends, axis=0):
             chosen = (ends == pair).all(axis=1)
-            one, other = (
-                self.zones[zone].material.pair_constants(
-                    (radii[0][chosen], radii[1][chosen]),
-                    vectors[chosen],
-                    bonded=bonded,
-                    gaps_close=gaps_close,
-                    locked_in=locked_in,
-                )
-                for zone in pair.tolist()
-            )
+            own: dict[str, Any] = {"radii": (radii[0][chosen], radii[1][chosen]), "vectors": vectors[chosen]}
+            own |= {"bonded": bonded, "gaps_close": gaps_close, "locked_in": locked_in}
+            one, other = (self.zones[zone].material.pair_constants(**own) for zone in pair.tolist())
             found[chosen] = one
             if pair[0] != pair[1]:
                 found[np.ix_(chosen, stiff)] = _in_series(one[:, stiff], other[:, stiff])
@@ -270,10 +263,8 @@ def _heights(strip: Assembly, zones: Sequence[Zone], height: float) -> np.ndarra
         soft = [compliances(each)[component] for each in (below, above)]
         if component in below.held or np.isclose(soft[0], soft[1], rtol=SAME, atol=0.0):
             continue
-        y, u = (
-            [float(np.average(values[part], weights=mass[part])) for part in ends]
-            for values in (up, moved[component, :, component])
-        )
+        both = up, moved[component, :, component]
+        y, u = ([float(np.average(values[part], weights=mass[part])) for part in ends] for values in both)
         found[place] = ((u[1] - u[0]) * wide + y[0] * soft[0] - y[1] * soft[1]) / (soft[0] - soft[1])
     return found - height
 
@@ -288,11 +279,9 @@ def _pulled(ground: LayeredGround, strip: Assembly, held: np.ndarray, pulled: np
     count, ends = len(strip.radii), strip.positions[strip.pairs]
     kinds = ground.pairing_of(ends[:, 0], ends[:, 1])
     each = [ground.stiffness_of(pairing) for pairing in ground.pairings]
-    columns = {
-        field.name: np.stack([getattr(one, field.name) for one in each])[kinds, strip.contact_type]
-        for field in fields(Stiffness)
-    }
-    network = Network(count, strip.pairs, ground.brick.vectors[strip.contact_type], Stiffness(**columns))
+    columns = (np.stack([getattr(one, field.name) for one in each]) for field in fields(Stiffness))
+    stiffness = Stiffness(*(column[kinds, strip.contact_type] for column in columns))
+    network = Network(count, strip.pairs, ground.brick.vectors[strip.contact_type], stiffness)
     free = np.ones((3, count), dtype=bool)
     free[:2, held] = False
     free[list(ground.held)] = False

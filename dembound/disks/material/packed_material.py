@@ -7,9 +7,10 @@ linear solve and gives wave speeds without a dynamic run.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any, Self
+from functools import cached_property, partial
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from dembound.disks.material.sliding import sliding_forces
 from dembound.laws import Law, Moduli, Stiffness
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
+
+T = TypeVar("T")
 
 NO_STIFFNESS = 1e-9
 """Stiffness over the largest one below which no wave runs: rounding in homogenisation leaves some 1e-13."""
@@ -58,14 +61,8 @@ class PackedMaterial:
     overlaps: np.ndarray | None = None
     is_secant: bool = False
     is_relaxed: bool = False
-    _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
-    _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
-    _resting: dict[tuple[float, ...], np.ndarray | None] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
-    _continua: dict[tuple[int, ...], HomogenisedMaterial] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
+    _kept: dict[tuple[str, Any], Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """What is known of its continuum, solved once, also where only its damping changes."""
 
     @cached_property
     def stiffness(self) -> Stiffness:
@@ -123,10 +120,7 @@ class PackedMaterial:
         """Stiffness of the springs with which it is stepped over `stiffness`; 1 without damping."""
         return 1.0 if self.mechanisms is None else self.mechanisms.unrelaxed
 
-    @property
-    def relaxed(self) -> PackedMaterial:
-        """The ground with the springs that it has at rest, without the forces of damping."""
-        return self._with(is_relaxed=True)
+
 
     @property
     def relaxes(self) -> bool:
@@ -136,7 +130,7 @@ class PackedMaterial:
     @cached_property
     def stepped(self) -> PackedMaterial:
         """The ground with the springs of its disks as they are stepped: those at rest where bonds have arms."""
-        return self.relaxed if self.relaxes else self
+        return self._with(is_relaxed=True) if self.relaxes else self
 
     @property
     def undamped(self) -> PackedMaterial:
@@ -146,8 +140,14 @@ class PackedMaterial:
     def _with(self, **damping: Any) -> Self:
         """The ground with other damping, which changes nothing of what is known of its continuum."""
         found = replace(self, **damping)
-        for name in ("_skins", "_cuts", "_resting", "_continua"):
-            object.__setattr__(found, name, getattr(self, name))
+        object.__setattr__(found, "_kept", self._kept)
+        return found
+
+    def _once(self, what: str, key: Any, solve: Callable[[], T]) -> T:
+        """A solution for a key, kept."""
+        if (what, key) not in self._kept:
+            self._kept[what, key] = solve()
+        found: T = self._kept[what, key]
         return found
 
     @property
@@ -168,12 +168,6 @@ class PackedMaterial:
         if self.mechanisms is None:
             return self.stiffness
         return self.stiffness.times(np.full(len(self.brick.pairs), self._spring_factor))
-
-    @property
-    def spring_moduli(self) -> Moduli:
-        """Micro-parameters of `springs`."""
-        moduli, factor = self.moduli, self._spring_factor
-        return replace(moduli, emod=factor * moduli.emod, pb_emod=factor * moduli.pb_emod)
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -249,13 +243,11 @@ class PackedMaterial:
         radii : (b,) m of first and second disks. zones : (b,) of both disks, see `zone_of`. bonded : whether the pairs
         have bonds; None: if the material has them.
         """
+        bonded = self.moduli.pb_emod > 0.0 if bonded is None else bonded
+        factor = self._spring_factor
+        moduli = replace(self.moduli, emod=factor * self.moduli.emod, pb_emod=factor * self.moduli.pb_emod)
         return self.law.pair_constants(
-            self.spring_moduli,
-            *radii,
-            vectors,
-            bonded=self.moduli.pb_emod > 0.0 if bonded is None else bonded,
-            gaps_close=gaps_close,
-            locked_in=locked_in,
+            moduli, *radii, vectors, bonded=bonded, gaps_close=gaps_close, locked_in=locked_in
         )
 
     @property
@@ -272,7 +264,7 @@ class PackedMaterial:
             return 0.0
         first, second = self.brick.radii[self.brick.pairs].T
         bonds = self.law.stiffness(replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
-        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2)).tensor
+        alone = homogenise(self.brick, bonds, self._held_turns).tensor
         return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
 
     @property
@@ -288,14 +280,18 @@ class PackedMaterial:
     @property
     def continuum(self) -> HomogenisedMaterial:
         """The continuum equivalent to the brick, with both translations free."""
-        return self._continuum(tuple(component for component in self.held if component == 2))
+        return self._continuum(self._held_turns)
+
+    @property
+    def _held_turns(self) -> tuple[int, ...]:
+        """The components that are held where both translations are free."""
+        return tuple(component for component in self.held if component == 2)
 
     def skin(self, side: str) -> float:
         """Depth (m) of the continuum's free surface at a side that cuts no brick, see `skin_depths`."""
         axis, last = divmod(SIDES.index(side), 2)
-        if axis not in self._skins:
-            self._skins[axis] = skin_depths(self.brick, self.stiffness, self.material_tensor, axis)
-        return self._skins[axis][last]
+        solve = partial(skin_depths, self.brick, self.stiffness, self.material_tensor, axis)
+        return self._once("skin", axis, solve)[last]
 
     def cut(self, height: float) -> tuple[float, float]:
         """Heights at which the packing's mass and its continuum end below a cut at a height, m above the brick's edge.
@@ -303,37 +299,35 @@ class PackedMaterial:
         Both in m above the cut, the second usually negative: see `Brick.mass_offset` and `skin_depths`.
         """
         height %= float(self.brick.size[1])
-        if height not in self._cuts:
+
+        def solve() -> tuple[float, float]:
             brick = cut_at(self.brick, height)
-            depth = skin_depths(brick, self.stiffness, self.material_tensor)[1]
-            self._cuts[height] = float(brick.mass_offset[1]), -depth
-        return self._cuts[height]
+            return float(brick.mass_offset[1]), -skin_depths(brick, self.stiffness, self.material_tensor)[1]
+
+        return self._once("cut", height, solve)
 
     def remember(self, found: HomogenisedMaterial) -> None:
         """Take the continuum with both translations free from a solve for a multiple of its moduli."""
-        self._continua[tuple(component for component in self.held if component == 2)] = found
+        self._kept["continuum", self._held_turns] = found
 
     def _continuum(self, held: tuple[int, ...]) -> HomogenisedMaterial:
         """The continuum with some components held, computed once."""
-        if held not in self._continua and not self.has_stiffness:
-            self._continua[held] = HomogenisedMaterial(np.zeros((4, 4)), np.zeros((3, len(self.brick.radii), 4)))
-        if held not in self._continua:
-            self._continua[held] = homogenise(self.brick, self.stiffness, held)
-        return self._continua[held]
+        if not self.has_stiffness:
+            return HomogenisedMaterial(np.zeros((4, 4)), np.zeros((3, len(self.brick.radii), 4)))
+        return self._once("continuum", held, lambda: homogenise(self.brick, self.stiffness, held))
 
     def sliding_forces(self, stress: np.ndarray) -> np.ndarray | None:
         """Forces (4, b) of the brick's contacts under a stress (3,) Pa at which some slide, see `sliding_forces`."""
         largest = float(np.abs(stress).max())
         way = tuple((stress / largest).round(DIGITS).tolist()) if largest > 0.0 else (0.0, 0.0, 0.0)
-        if way not in self._resting:
-            brick, held = self.brick, tuple(component for component in self.held if component == 2)
-            network, area = Network.of_brick(brick, self.at_rest.stiffness), float(np.prod(brick.size))
-            found = sliding_forces(
-                network, *self.stiffnesses(self.contact_constants), self.moduli.fric, np.array(way), held, area
-            )
-            self._resting[way] = found
-        kept = self._resting[way]
-        return None if kept is None else largest * kept
+
+        def solve() -> np.ndarray | None:
+            network, area = Network.of_brick(self.brick, self.at_rest.stiffness), float(np.prod(self.brick.size))
+            springs, friction = self.stiffnesses(self.contact_constants), self.moduli.fric
+            return sliding_forces(network, *springs, friction, np.array(way), self._held_turns, area)
+
+        found = self._once("sliding", way, solve)
+        return None if found is None else largest * found
 
     def wave_speeds(self, axis: int) -> tuple[float, float]:
         """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.

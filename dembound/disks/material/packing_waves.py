@@ -46,9 +46,8 @@ def _front_in(ground: PackedMaterial, safety: float) -> Front:
     grain, speed = float(np.hypot(*ground.brick.vectors.T).max()), largest_phase_speed(ground)
     if speed == 0.0:
         return Front(0.0, grain)
-    ratio = _largest_ratio(
-        ground.density, ground.moduli, ground.law, ground.held, 0.5 * ground.brick.mean_diameter, min(safety, SHARE)
-    )
+    radius, safety = 0.5 * ground.brick.mean_diameter, min(safety, SHARE)
+    ratio = _largest_ratio(ground.density, ground.moduli, ground.law, ground.held, radius, safety)
     return Front(max(1.0, ratio) * np.sqrt(ground.unrelaxed) * speed, grain)
 
 
@@ -263,9 +262,8 @@ def _matrices(ground: PackedMaterial, waves: np.ndarray, axis: int) -> tuple[np.
     stiffness = ways.T @ diags(network.springs) @ ways + FAINT * longest**2 * diags(mass)
     solver = splu(stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     angles = brick.positions @ (math.pi * waves / brick.size).T
-    shapes = (
-        np.stack([np.cos(angles), np.sin(angles)], axis=-1) * np.where(waves.any(axis=1), math.sqrt(2.0), 1.0)[:, None]
-    )
+    sizes = np.where(waves.any(axis=1), math.sqrt(2.0), 1.0)
+    shapes = np.stack([np.cos(angles), np.sin(angles)], axis=-1) * sizes[:, None]
     moved = np.zeros((3, len(mass) // 3, *shapes.shape[1:], 2))  # component, disk, wave, cosine or sine, direction
     moved[0, ..., 0] = moved[1, ..., 1] = shapes
     moved = moved.reshape(len(mass), -1)
@@ -307,9 +305,7 @@ def sent_back(
     for axis, found in couplings(ground, numbers):
         band = found.band(lengths[axis]) / len(axes)
         for n, (frequencies, energy) in enumerate(spectra):
-            density = np.interp(found.frequency, frequencies, energy) / (
-                energy.sum() * (frequencies[1] - frequencies[0])
-            )
-            shares[n] += band * density
+            whole = energy.sum() * (frequencies[1] - frequencies[0])
+            shares[n] += band * (np.interp(found.frequency, frequencies, energy) / whole)
     above = max(float(energy[frequencies > reached].sum() / energy.sum()) for frequencies, energy in spectra)
     return SentBack(math.sqrt(min(float(shares.max()), 1.0)), reached, above if highest < cutoff else 0.0)

@@ -89,10 +89,8 @@ def sliding_forces(
         forces[0] -= push
         forces[1] += shear
         lacking = applied - ways.T @ forces.ravel()
-        off = [
-            np.abs(lacking[:3]).max() / np.abs(applied).max(),
-            np.abs(lacking[3:]).max(initial=0.0) / np.abs(forces).max(),
-        ]
+        whole, single = np.abs(lacking[:3]).max(), np.abs(lacking[3:]).max(initial=0.0)
+        off = whole / np.abs(applied).max(), single / np.abs(forces).max()
         if not np.isfinite(off).all():
             return None
         if max(off) <= ENOUGH:

@@ -45,12 +45,9 @@ def with_target(ground: PackedMaterial, target: Target, place: str) -> PackedMat
     body whose motions along x or y are held.
     """
     if held := [name for name, axis in (("x", 0), ("y", 1)) if axis in ground.held]:
-        raise CaseError(
-            [
-                f"{place}.{target.keys[1]}: with {target.keys[0]} is asked of a body that moves freely, but "
-                f"motion.held holds {' and '.join(held)}; leave that out, or give p_wave_speed alone"
-            ]
-        )
+        said = f"{place}.{target.keys[1]}: with {target.keys[0]} is asked of a body that moves freely"
+        holds = f"motion.held holds {' and '.join(held)}; leave that out, or give p_wave_speed alone"
+        raise CaseError([f"{said}, but {holds}"])
     content = ground.content(target)
     if content in _FOUND:
         kratio, factor = _FOUND[content]
@@ -134,23 +131,17 @@ def _with(ground: PackedMaterial, kratio: float, factor: float = 1.0) -> PackedM
 
 def _out_of_reach(ground: PackedMaterial, target: Target, place: str) -> str:
     """Message about a target that no kratio reaches, with the brick's range."""
-    ends = [
-        moduli_of(_with(ground, kratio).material_tensor, target.along, by_waves=target.by_waves)
-        for kratio in (LEAST, MOST)
-    ]
+    tensors = [_with(ground, kratio).material_tensor for kratio in (LEAST, MOST)]
+    ends = [moduli_of(tensor, target.along, by_waves=target.by_waves) for tensor in tensors]
     if target.by_waves:
         low, asked, high = (np.sqrt(each.uniaxial / each.shear) for each in (ends[0], target.moduli, ends[1]))
         what, key = "c_p/c_s", "s_wave_speed"
+        others = ', or pattern "A", which has any along its rows (along = "x" or "y")'
     else:
         low, asked, high = (each.poisson(target.plane) for each in (ends[0], target.moduli, ends[1]))
         what, key = f'Poisson\'s ratio (plane = "{target.plane}")', target.keys[1]
-    others = ", a looser packing (packing.confining_stress)" if asked > high and len(ground.brick.radii) > 1 else ""
-    others += (
-        ', or pattern "A", which has any along its rows (along = "x" or "y")'
-        if target.by_waves
-        else ', or p_wave_speed and s_wave_speed, of which pattern "A" has any along its rows (along = "x" or "y")'
-    )
-    return (
-        f"{place}.{key}: asks for {what} = {asked:.3g}, but this brick has {low:.3g} to {high:.3g} (kratio {LEAST:g} "
-        f"to {MOST:g}); give one within it{others}"
-    )
+        others = ', or p_wave_speed and s_wave_speed, of which pattern "A" has any along its rows (along = "x" or "y")'
+    if asked > high and len(ground.brick.radii) > 1:
+        others = f", a looser packing (packing.confining_stress){others}"
+    has = f"this brick has {low:.3g} to {high:.3g} (kratio {LEAST:g} to {MOST:g}); give one within it{others}"
+    return f"{place}.{key}: asks for {what} = {asked:.3g}, but {has}"

@@ -162,13 +162,11 @@ class Surroundings:
         _, begin = np.unique(wall.element, return_index=True)
         nodes = self.body.mesh.nodes[wall.elements].reshape(len(wall.elements), -1)
         node, entry = np.unique(nodes, return_index=True)
-        tied = {}
+        side_of_node, tied = wall.bonds.side[begin[entry // nodes.shape[1]]], {}
         for number, name in enumerate(SIDES):
             if name in self.sides:
                 tied[name] = disk[wall.bonds.side[first] == number]
-                tied[f"{name}{CONTINUUM}"] = (
-                    self.first + node[wall.bonds.side[begin[entry // nodes.shape[1]]] == number]
-                )
+                tied[f"{name}{CONTINUUM}"] = self.first + node[side_of_node == number]
         return tied
 
     @cached_property
@@ -194,17 +192,15 @@ class Surroundings:
 
     def ties(self, layout: Layout, supported: np.ndarray) -> WallTies:
         """The ties for the kernels; supported (k,) are the nodes of the support table, ascending."""
-        line = np.zeros(layout.count, dtype=np.int64)
-        line[layout.slot[supported]] = np.arange(len(supported))
+        line, slot = np.zeros(layout.count, dtype=np.int64), layout.slot
+        line[slot[supported]] = np.arange(len(supported))
         disk, twin, rest = self.wall.bonds.particle, None, None
         if self.twins:
             right = self.wall.bonds.side == SIDES.index("right")
             twin = np.where(right, self.twins[-1][disk], self.twins[0][disk])
         if self.rest is not None:
             rest = self.rest[:, disk] - (0.0 if twin is None else self.rest[:, twin])
-        return self.wall.ties(
-            layout.slot, layout.slot[self.nodes], line, None if twin is None else layout.slot[twin], rest
-        )
+        return self.wall.ties(slot, slot[self.nodes], line, None if twin is None else slot[twin], rest)
 
     def add_tie_forces(self, layout: Layout, u: np.ndarray, force: np.ndarray) -> None:
         """Add the forces (3, n) of its ties on all nodes of the scene at displacements u (3, slots), at rest."""
@@ -280,7 +276,8 @@ def surroundings_of(
     )
     density = grid.own_mass / (grid.thickness * mesh.areas) if ground.is_layered else ground.density
     grid = replace(grid, added_mass=mass_of(massless, mesh, density))
-    bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
+    bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides)
+    bonds = replace(bonds, particle=bonds.particle + first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     above = [ground.beside(side).at(rim.surface or rim.box[3]).density for side in ("left", "right")]
     surface_mass = rim.massless.get("top", 0.0) * (0.5 * sum(above))
@@ -312,9 +309,5 @@ def _on_edges(ground: Ground, mesh: Mesh) -> Ground:
     if not isinstance(ground, Layered):
         return ground
     edges = mesh.origin[1] + mesh.axes[1].edges
-    inside = [edges[0] < joint < edges[-1] for joint in ground.joints]
-    joints = [
-        float(edges[np.argmin(np.abs(edges - joint))]) if own else joint
-        for joint, own in zip(ground.joints, inside, strict=True)
-    ]
-    return replace(ground, joints=tuple(joints))
+    nearest = [(joint, float(edges[np.argmin(np.abs(edges - joint))])) for joint in ground.joints]
+    return replace(ground, joints=tuple(edge if edges[0] < joint < edges[-1] else joint for joint, edge in nearest))

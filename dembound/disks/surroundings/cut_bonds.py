@@ -64,18 +64,8 @@ class CutBonds:
         force = _forces(stiffness, normal, arms[0], strained, own[2])
         if np.all(np.abs(force[2]) <= ROUNDING * stiffness[2]):
             stiffness[2] = 0.0
-        return cls(
-            particle=cut.node,
-            normal=normal,
-            arm=arms[0],
-            height=positions[cut.node, 1],
-            point=positions[cut.node] + (arms[0] * normal).T,
-            stiffness=stiffness,
-            corrector=corrector,
-            own=own,
-            force=force,
-            side=cut.side,
-        )
+        height, point = positions[cut.node, 1], positions[cut.node] + (arms[0] * normal).T
+        return cls(cut.node, normal, arms[0], height, point, stiffness, corrector, own, force, cut.side)
 
     @classmethod
     def _of_layers(cls, ground: LayeredGround, cut: CutContacts, positions: np.ndarray) -> CutBonds:
@@ -118,10 +108,6 @@ class CutBonds:
         """The bonds with the continuum's motion taken at other points (t, 2) m; c then includes the way from there."""
         corrector = self.corrector + _uniform((self.point - point).T)
         return replace(self, point=point, corrector=corrector)
-
-    def numbered_from(self, first: int) -> CutBonds:
-        """The bonds with particle numbers of a body whose first disk has the number `first`."""
-        return replace(self, particle=self.particle + first)
 
 
 def _middle(own: np.ndarray, other: np.ndarray, arms: np.ndarray, normal: np.ndarray) -> np.ndarray:

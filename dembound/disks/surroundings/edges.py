@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -50,12 +51,9 @@ def edge_without(edge: Edge, kept: np.ndarray, *, may_end: bool = False) -> Edge
     if not still.any():
         if may_end:
             return None
-        raise CaseError(
-            [
-                f"hole: holes remove all {len(edge.nodes)} particles that make up the {edge.side} side, so boundary."
-                f"{edge.side} acts on nothing; make them smaller, or let packing.size end where they begin"
-            ]
-        )
+        said = f"hole: holes remove all {len(edge.nodes)} particles that make up the {edge.side} side, so boundary."
+        more = f"{edge.side} acts on nothing; make them smaller, or let packing.size end where they begin"
+        raise CaseError([said + more])
     diameters = edge.diameters[still]
     length = edge.length * float(diameters.sum() / edge.diameters.sum())
     return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
@@ -71,11 +69,10 @@ def edges_beside_columns(assembly: Assembly, seams: Sequence[Seam], edges: Mappi
     for side, edge in edges.items():
         nodes, length = edge.nodes + first, edge.length
         if edge.axis == 1:
-            each = [
-                seam.disks.start
-                + exposed(assembly.positions[seam.disks], assembly.radii[seam.disks], side, period=seam.width)
-                for seam in seams
-            ]
+            each = []
+            for seam in seams:
+                places, radii = assembly.positions[seam.disks], assembly.radii[seam.disks]
+                each.append(seam.disks.start + exposed(places, radii, side, period=seam.width))
             if side == "bottom" or len(seams) == 1:
                 nodes = np.flatnonzero(np.isin(seams[0].twin, each[0]))
             nodes = np.unique(np.concatenate([nodes, *each[1:]]))
@@ -110,10 +107,8 @@ def hollowed(
     removed = np.logical_or.reduce([hole.takes(body.positions, case.packing.span) for hole in holes])
     left, kept = body.without(removed)
     beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
-    problems = [
-        line for what in beyond for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], floors)
-    ]
-    if problems:
+    each = (_at_sides(case, brick, body, kept, holes, what, sides, floors) for what, sides in beyond.items())
+    if problems := [*chain.from_iterable(each)]:
         raise CaseError(problems)
     acting: set[str] = {side for load in case.load for side in load.sides or ()}
     acting |= {side for side, table in case.boundary.items() if not table.is_free}

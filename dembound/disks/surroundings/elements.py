@@ -89,10 +89,8 @@ class _Rows(NamedTuple):
         """Largest height (m) of elements that begin at a height y, m."""
         if not self.settings.taller or self.ground is None:
             return self.settings.element
-        layer = int(np.searchsorted(self.joints, height, side="right"))
-        return max(
-            self.settings.element, min(self.settings.element * self.settings.taller[layer], TALLEST * self.width)
-        )
+        times = self.settings.taller[int(np.searchsorted(self.joints, height, side="right"))]
+        return max(self.settings.element, min(self.settings.element * times, TALLEST * self.width))
 
     def between(self, low: float, high: float) -> list[float]:
         """Heights (m) of rows from a height y (m) to another, with edges on the joints between them.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -109,11 +109,8 @@ class UnlikeWaves(GroundWaves):
 
     def motion(self, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None) -> np.ndarray:
         """Motion (k, d, 3) at places (d, 2) m, right of the border that of the right side, see `GroundWaves.motion`."""
-        return np.where(
-            (places[:, 0] > self.border)[:, None],
-            self.beside("right", of, times, places, corrector),
-            self.beside("left", of, times, places, corrector),
-        )
+        right, left = (self.beside(side, of, times, places, corrector) for side in ("right", "left"))
+        return np.where((places[:, 0] > self.border)[:, None], right, left)
 
     @property
     def left(self) -> GroundWaves:
@@ -300,24 +297,13 @@ def must_not_be_there(case: DiskCase, found: Arriving, outside: Surroundings) ->
     first = found.arrives(np.array([(left, bottom), (right, bottom), (left, top), (right, top)]))
     begins = case.wave[case.incident.wave].start
     if begins + first < -found.across:  # ties are within a diameter of the box
-        raise CaseError(
-            [
-                f"incident.point: the wave would reach the disks {-(begins + first):.3g} s before the run begins; give "
-                f"wave.{case.incident.wave}.start = {-first:.3g} (s) or more, or a point that it passes earlier"
-            ]
-        )
-
-
-class _Bands(NamedTuple):
-    """Bands of disks: band (c,) of each disk, share (c,) of each in the mass of its band, height (b,) m of each."""
-
-    band: np.ndarray
-    share: np.ndarray
-    height: np.ndarray
+        said = f"the wave would reach the disks {-(begins + first):.3g} s before the run begins; give"
+        start = f"wave.{case.incident.wave}.start = {-first:.3g} (s) or more"
+        raise CaseError([f"incident.point: {said} {start}, or a point that it passes earlier"])
 
 
 class GroundMotion:
-    """Motion at some heights, from the motion of the disks of a column.
+    """Motion at some heights, from the motion of the disks of a column, in bands of about equal height.
 
     Parameters
     ----------
@@ -325,23 +311,18 @@ class GroundMotion:
     """
 
     def __init__(self, up: np.ndarray, mass: np.ndarray, diameter: float, heights: np.ndarray) -> None:
-        self._up, self._mass, self._diameter, self._heights = up, mass, diameter, heights
-
-    @cached_property
-    def _bands(self) -> _Bands:
-        """The bands that have disks."""
-        row = np.floor((self._up - self._up.min()) / self._diameter + 0.5).astype(np.int64)
-        _, band = np.unique(row, return_inverse=True)
-        share = self._mass / np.bincount(band, self._mass)[band]
-        return _Bands(band, share, np.bincount(band, share * self._up))
+        row = np.floor((up - up.min()) / diameter + 0.5).astype(np.int64)
+        _, self._band = np.unique(row, return_inverse=True)  # of each disk
+        self._share = mass / np.bincount(self._band, mass)[self._band]  # of each in the mass of its band
+        self._height, self._heights = np.bincount(self._band, self._share * up), heights
 
     def at_heights(self, values: np.ndarray) -> np.ndarray:
         """Displacements or velocities (m, 3) from those of the column's disks (c, 3); rotations are zero.
 
         Constant beyond the first and last bands.
         """
-        band, share, height = self._bands
         motion = np.zeros((len(self._heights), 3))
         for axis in (0, 1):
-            motion[:, axis] = np.interp(self._heights, height, np.bincount(band, share * values[:, axis]))
+            mean = np.bincount(self._band, self._share * values[:, axis])
+            motion[:, axis] = np.interp(self._heights, self._height, mean)
         return motion

@@ -245,12 +245,8 @@ def rising_in_layers(
     for number in (0, 1):
         motions = np.array([own[:, number] * np.copysign(1.0, own[number, number]) for _, own in waves])
         speeds = [float(speed[number]) for speed, _ in waves]
-        layers = [
-            Layer(thick, medium.density, speed, relative=modulus)
-            for thick, medium, speed, modulus in zip(
-                thickness, media, speeds, relative or [None] * len(media), strict=True
-            )
-        ]
+        each = zip(thickness, media, speeds, relative or [None] * len(media), strict=True)
+        layers = [Layer(thick, medium.density, speed, relative=modulus) for thick, medium, speed, modulus in each]
         velocity = _summed(signals, motions[-1])
         if velocity is not None:
             columns.append(ColumnMotion(Column(layers, mass=mass), velocity, top - height, *span))
@@ -285,16 +281,10 @@ def undisturbed(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -
         if found is None:
             raise CaseError([_beyond(case, media)])
     else:
-        found = rising_in_layers(
-            media,
-            case.layer_planes,
-            outside.free_surface,
-            (wave, None) if table.type == "sv" else (None, wave),
-            reference_point(case)[1],
-            (wave.begin(), case.run.duration),
-            grain,
-            [None if each.mechanisms is None else each.mechanisms.relative_modulus for each in layers],
-        )
+        signals, height = (wave, None) if table.type == "sv" else (None, wave), reference_point(case)[1]
+        relative = [None if each.mechanisms is None else each.mechanisms.relative_modulus for each in layers]
+        span, ground_of = (wave.begin(), case.run.duration), (media, case.layer_planes, outside.free_surface)
+        found = rising_in_layers(*ground_of, signals, height, span, grain, relative)
     must_not_be_there(case, found, outside)
     return found
 
@@ -325,9 +315,6 @@ def _summed(
     signals: tuple[Incident | None, Incident | None], motion: np.ndarray
 ) -> Callable[[np.ndarray], np.ndarray] | None:
     """The velocity along a polarisation (2,) of signals along x and y; None without any."""
-    parts = [
-        (part, signal)
-        for part, signal in zip(motion.tolist(), signals, strict=True)
-        if signal is not None and abs(part) > NO_PART
-    ]
+    both = zip(motion.tolist(), signals, strict=True)
+    parts = [(part, signal) for part, signal in both if signal is not None and abs(part) > NO_PART]
     return (lambda t: np.asarray(sum(part * signal.velocity(t) for part, signal in parts))) if parts else None

@@ -131,7 +131,8 @@ class Rim(NamedTuple):
         mass = [*low.tolist(), *(low + size.box).tolist()]
         rim, box, skins, massless = box_of(body), [*mass], {}, {}
         for side in SIDES:
-            if case.side(side).is_free and _is_beside(side, sides):
+            continues = any(normal_axis(each) != normal_axis(side) for each in sides)  # along the continuum there
+            if case.side(side).is_free and continues:
                 number, outwards = normal_axis(side) + 2 * is_far(side), 1.0 if is_far(side) else -1.0
                 height = box[3 if side == "top" else 1]  # left and right: of what is below
                 skins[side] = _skin(ground, side, height, floors)
@@ -139,7 +140,9 @@ class Rim(NamedTuple):
                 massless[side] = outwards * (mass[number] - box[number])
         surface = None
         if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
-            _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
+            if gap < (least := least_element(case, ground.brick.mean_diameter)):
+                ends = f"the disks end {gap:.4g} m below the surface of the ground; they must reach it, or end"
+                raise CaseError([f"packing.origin: {ends} at least {least:.4g} m below, the smallest useful element"])
             skins["top"] = _skin(ground, "top", case.box[3], floors)
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
@@ -291,17 +294,6 @@ def _gap_above(case: DiskCase, body: Assembly) -> float:
     return case.box[3] + 0.5 * float((body.extent - body.size)[1]) - box_of(body)[3]  # with rows that close it
 
 
-def _refuse_thin(gap: float, least: float) -> None:
-    """Raise CaseError for a gap (m) below the free surface in which no useful element fits."""
-    if gap < least:
-        raise CaseError(
-            [
-                f"packing.origin: the disks end {gap:.4g} m below the surface of the ground; they must reach it, or "
-                f"end at least {least:.4g} m below, the smallest useful element"
-            ]
-        )
-
-
 def _refuse_low(key: str, rim: Rim, least: float) -> None:
     """Raise CaseError for ground lower beyond a side if no useful element (m) fits between its heights.
 
@@ -318,12 +310,9 @@ def _refuse_low(key: str, rim: Rim, least: float) -> None:
     for low, high in pairwise(order):
         apart = heights[high] - heights[low]
         if WHOLE * (rim.box[3] - rim.box[1]) < apart < least:
-            raise CaseError(
-                [
-                    f"{key}: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
-                    f"{'as high, or ' if low in surfaces else ''}{least_is}"
-                ]
-            )
+            allowed = f"{'as high, or ' if low in surfaces else ''}{least_is}"
+            said = f"{high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}"
+            raise CaseError([f"{key}: {said}; must be {allowed}"])
 
 
 def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:
@@ -336,8 +325,3 @@ def box_of(body: Assembly) -> Box:
     low = body.origin + 0.5 * (body.size - body.extent)
     left, bottom, right, top = np.concatenate([low, low + body.extent]).tolist()
     return left, bottom, right, top
-
-
-def _is_beside(side: str, sides: Sequence[str]) -> bool:
-    """Whether a side of a body adjoins one of some others, so that it continues along the continuum beyond that."""
-    return any(normal_axis(each) != normal_axis(side) for each in sides)

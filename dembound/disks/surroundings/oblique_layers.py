@@ -48,9 +48,8 @@ class ObliqueLayers:
 
     def near(self, places: np.ndarray) -> NearObliqueLayers:
         """The waves near places (k, 2) m only."""
-        return NearObliqueLayers(
-            self, {layer: self.layers[layer].near(places[own]) for layer, own in self.parts(places[:, 1])}
-        )
+        parts = self.parts(places[:, 1])
+        return NearObliqueLayers(self, {layer: self.layers[layer].near(places[own]) for layer, own in parts})
 
     def motion(self, of: str, times: np.ndarray, places: np.ndarray, corrector: np.ndarray | None = None) -> np.ndarray:
         """Motion (k, d, 3) of disks at places (d, 2) m with correctors (3, 4, d), by default none, at times (k,) s.

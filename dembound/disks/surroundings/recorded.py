@@ -113,8 +113,6 @@ class RecordedContinuum(Beside):
     @cached_property
     def _grounds(self) -> list[GroundMotion]:
         """The motion of the ground at the nodes, from that of each column."""
-        heights = self._outside.body.mesh.positions[:, 1]
-        return [
-            GroundMotion(self._disks.positions[column.disks, 1], self._mass[column.disks], self._diameter, heights)
-            for column in self._disks.columns
-        ]
+        up, heights = self._disks.positions[:, 1], self._outside.body.mesh.positions[:, 1]
+        columns = [column.disks for column in self._disks.columns]
+        return [GroundMotion(up[own], self._mass[own], self._diameter, heights) for own in columns]

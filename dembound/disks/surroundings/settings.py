@@ -120,16 +120,14 @@ def _taller(
     keys, signals = case.outside, signals_of(case)
     if not ground.joints or keys.element or not signals:
         return ()
-    near = min(
-        (field.largest_side(keys.order, keys.accuracy) for field in near_fields(case, ground, box, sides)),
-        default=math.inf,
-    )
+    fields = near_fields(case, ground, box, sides)
+    near = min((field.largest_side(keys.order, keys.accuracy) for field in fields), default=math.inf)
     media = ground.between_joints if isinstance(ground, Unlike) else [(each,) for each in ground.media]
-    enough = [
-        min(near, *(sizing.element_size(signals, each, keys.order, keys.accuracy) for each in beside))
-        for beside in media
-    ]
-    return tuple(min(max(side / settings.element, 1.0), TALLEST) for side in enough)
+    found = []
+    for beside in media:
+        enough = min(near, *(sizing.element_size(signals, each, keys.order, keys.accuracy) for each in beside))
+        found.append(min(max(enough / settings.element, 1.0), TALLEST))
+    return tuple(found)
 
 
 def settings_of(case: DiskCase, medium: Ground, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
