@@ -67,21 +67,6 @@ def with_layers(ground: PackedMaterial, assembly: Assembly, seams: Sequence[Seam
     return assembly, tuple(own)
 
 
-def layer_attributes(case: DiskCase) -> dict[str, Any]:
-    """The names of the layers of a case, and heights (m) of joints from the surface down, of each side if they differ.
-
-    Of either side also the numbers of its layers, from 1.
-    """
-    if not case.layer_planes:
-        return {}
-    names = {"layer_names": [*case.layer_names]}
-    if not case.is_unlike:
-        return names | {"joints": [*case.layer_planes]}
-    own = {f"{side}_layers": [1 + number for number in case.numbers_beside(side)] for side in case.sides_of_ground}
-    joints = {f"{side}_joints": np.array(case.beside(side).layer_planes) for side in case.sides_of_ground}
-    return names | {"meet": case.ground.meet} | own | joints
-
-
 @dataclass(frozen=True)
 class DiskBody(Scene):
     """A body of disks, with its free-field column if it has one, under its supports; n particles, all SI.
@@ -129,9 +114,21 @@ class DiskBody(Scene):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """The attributes of a record's header in addition to those of every run."""
-        seed = getattr(self.case.packing, "seed", 0)
-        return {"seed": seed, "column": self.column_count, **layer_attributes(self.case)}
+        """The attributes of a record's header in addition to those of every run.
+
+        Of layers their names, and heights (m) of joints from the surface down; where these differ at both sides those
+        of each, and the numbers of its layers, from 1.
+        """
+        case, found = self.case, {"seed": getattr(self.case.packing, "seed", 0), "column": self.column_count}
+        if case.layer_planes:
+            found["layer_names"] = [*case.layer_names]
+            if not case.is_unlike:
+                return found | {"joints": [*case.layer_planes]}
+            found["meet"] = case.ground.meet
+            for side in case.sides_of_ground:
+                found[f"{side}_layers"] = [1 + number for number in case.numbers_beside(side)]
+                found[f"{side}_joints"] = np.array(case.beside(side).layer_planes)
+        return found
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
@@ -198,8 +195,8 @@ class DiskBody(Scene):
         """The nodes of the continuum round the body, which are recorded separately; None without it."""
         if self.outside is None:
             return None
-        diameter = self.ground.brick.mean_diameter
-        return RecordedContinuum(self.outside, self.ground_waves, self.assembly, self.mass, diameter)
+        brick = self.ground.brick
+        return RecordedContinuum(self.outside, self.ground_waves, self.assembly, self.mass, brick.mean_diameter)
 
     @cached_property
     def positions(self) -> np.ndarray:  # type: ignore[override]  # computed once

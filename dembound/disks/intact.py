@@ -59,9 +59,6 @@ def require_room(case: DiskCase, zones: Mapping[str, np.ndarray], count: int) ->
     if inside > MOST * count:
         keys = " and ".join(f"boundary.{side}.intact" for side in zones)
         depths = " and ".join(str(case.intact[side]) for side in zones)
-        raise CaseError(
-            [
-                f"{keys}: {'is' if len(zones) == 1 else 'are'} {depths}: bonds of {inside:,} of {count:,} disks would "
-                "not break, more than half of the body; take a larger body, or give 0 where they may break"
-            ]
-        )
+        said = f"{keys}: {'is' if len(zones) == 1 else 'are'} {depths}: bonds of {inside:,} of {count:,} disks would"
+        more = "more than half of the body; take a larger body, or give 0 where they may break"
+        raise CaseError([f"{said} not break, {more}"])

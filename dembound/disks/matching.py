@@ -68,13 +68,9 @@ def require_dashpots_alone(scene: DiskScene, side: str) -> None:
     """
     table = supports_of(scene, side)
     if table.stiffness.any() or table.follow.any():
-        given = scene.case.side(side).type
-        raise CaseError(
-            [
-                f'boundary.{side}.type: "{given}" still has springs where dashpots are needed alone, so no factor of '
-                "dashpots can be found for it; a type with springs needs the method dashpots_alone()"
-            ]
-        )
+        said = f'boundary.{side}.type: "{scene.case.side(side).type}" still has springs where dashpots are needed alone'
+        why = "so no factor of dashpots can be found for it; a type with springs needs the method dashpots_alone()"
+        raise CaseError([f"{said}, {why}"])
 
 
 class Held(NamedTuple):
@@ -91,9 +87,6 @@ class Held(NamedTuple):
         """
         edge = scene.edges[side] if part is None else media_of(scene, side)[part][0]
         table = supports_of(scene, side, part)
-        return cls(
-            *(
-                np.array([np.sum(values[table.component == axis]) for axis in (0, 1)]) / _length(edge)
-                for values in (table.damping, table.stiffness)
-            )
-        )
+        by_axis = [table.component == axis for axis in (0, 1)]
+        both = table.damping, table.stiffness
+        return cls(*(np.array([np.sum(values[own]) for own in by_axis]) / _length(edge) for values in both))

@@ -66,17 +66,9 @@ class SceneSizes:
         beyond: dict[str, float] = {}
         if self.grid is not None:
             beyond = {**self.grid.counts, "tie": self.ties, "tie_row": self.ties * (self.grid.order + 1)}
-        return {
-            "disk": self.disks,
-            "disk_slot": self.slots,
-            "slot": self.moving,
-            "contact": self.contacts,
-            "pair": pairs,
-            "place": places,
-            "piece": min(PIECE, places),
-            **recorded(self.probes, BLOCK, WIDTH, self.supported),
-            **beyond,
-        }
+        disks = {"disk": self.disks, "disk_slot": self.slots, "slot": self.moving, "contact": self.contacts}
+        listed = {"pair": pairs, "place": places, "piece": min(PIECE, places)}
+        return disks | listed | recorded(self.probes, BLOCK, WIDTH, self.supported) | beyond
 
     @classmethod
     def expected(cls, case: DiskCase) -> SceneSizes:
@@ -120,9 +112,8 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     In layers it is that of the slowest.
     """
     sides = [side for side, table in case.boundary.items() if table.is_outside]
-    if not sides or (
-        case.outside.element is None and case.static is None and not signals_of(case)
-    ):  # which cannot be built
+    cannot_be_built = case.outside.element is None and case.static is None and not signals_of(case)
+    if not sides or cannot_be_built:
         return None
     speed, material = min(((_nominal_speed(each), each) for each in case.materials), key=lambda each: each[0])
     medium = Medium.isotropic(material.density, speed, 0.5 * speed)
@@ -249,13 +240,10 @@ def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     fields = total(whole.counts, "fields", contact_count=has_history)
     if case.output.stress:
         fields = max(fields, total(counts, "stress", "stress_field"))
-    kept = [
-        (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots),
-        total(counts, "saved", saved_pairs=has_history, saved_arms=case.relaxes, saved_rolling=_resists_rolling(case))
-        * (case.run.checkpoint > 0.0),
-        total(whole.counts, "mesh_header"),
-    ]
-    return moving + pairs + max(kept)
+    fields = (fields + total(whole.counts, "mesh_fields")) * bool(case.output.snapshots)
+    saved = {"saved_pairs": has_history, "saved_arms": case.relaxes, "saved_rolling": _resists_rolling(case)}
+    checkpoint = total(counts, "saved", **saved) * (case.run.checkpoint > 0.0)
+    return moving + pairs + max(fields, checkpoint, total(whole.counts, "mesh_header"))
 
 
 def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:

@@ -93,9 +93,10 @@ def monitors_of(
                 between[name] = replace(between[name], known=_moving(waves, ground, *disk))
             beside = "right" if disk[0][0] > case.middle else "left"
             there = waves.in_ground(beside, disk[0][None])[0] if isinstance(waves, UnlikeWaves) else disk[0]
-            between[f"{name}{FREE_FIELD}"] = _in_column(
-                there, twins.get(name), _moving(waves, ground, *disk, beside=beside)
-            )
+            on_twin = np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))  # without a column
+            if name in twins:
+                on_twin = np.array([twins[name]]), np.eye(3)[None]
+            between[f"{name}{FREE_FIELD}"] = Between(there, *on_twin, _moving(waves, ground, *disk, beside=beside))
         twins = nodes | twins
     between |= _means(case, ground, assembly, first)
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between
@@ -140,13 +141,6 @@ def _moving(
         return np.hstack([moved(of, times, place[None], corrector)[:, 0] for of in ("displacement", "velocity")])
 
     return motion
-
-
-def _in_column(place: np.ndarray, twin: int | None, moving: Moving) -> Between:
-    """A disk at a place (2,) m in the ground without the body; twin : its number in a free-field column, if any."""
-    if twin is None:
-        return Between(place, np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3)), moving)
-    return Between(place, np.array([twin]), np.eye(3)[None], moving)
 
 
 @dataclass(frozen=True)

@@ -211,14 +211,15 @@ def moves_as_all(row: OneRow) -> bool:
     """Whether all rows of a scene move as this one, in displacements, energies and, if needed, stresses."""
     if not _same_outside(row, _driven(row.of)):  # most scenes are refused here, at little cost
         return False
-    moves, (of_whole, of_row) = _motions(row)
+    moves, found = _motions(row)
     masses = np.bincount(row.like, row.of.mass) / row.mass
-    return (
-        _are_alike(row, of_whole, of_row, moves)
-        and _same_outside(row, moves)
-        and bool(np.ptp(masses) <= ROUNDING * masses.max())
-        and (not row.case.output.stress or _are_alike(row, *_stresses(row, moves)))
-    )
+    alike = _are_alike(row, *found, moves) and _same_outside(row, moves)
+    alike = alike and bool(np.ptp(masses) <= ROUNDING * masses.max())
+    if not alike or not row.case.output.stress:
+        return alike
+    displacement = _random(row, moves)
+    stresses = row.of.elastic_stress(displacement[:, row.like]), row.elastic_stress(displacement)
+    return _are_alike(row, *(each.T for each in stresses))
 
 
 def _same_outside(row: OneRow, components: np.ndarray) -> bool:
@@ -296,9 +297,3 @@ def _from_outside(scene: DiskScene) -> Iterator[np.ndarray]:
     for signal in range(len(table.signals)):
         chosen = number == signal
         yield of_all(table.drive_row[chosen], drive[chosen])
-
-
-def _stresses(row: OneRow, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stresses (3, n) and (3, m) by a random motion, of the scene and of the row."""
-    displacement = _random(row, moves)
-    return row.of.elastic_stress(displacement[:, row.like]).T, row.elastic_stress(displacement).T

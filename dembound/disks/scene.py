@@ -13,20 +13,9 @@ from dembound.boundaries.support import Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import GridSizes
+from dembound.disks import columns
 from dembound.disks.bearing import Springs, bearing_springs, together
 from dembound.disks.body import DiskBody, with_half_contacts, with_layers
-from dembound.disks.columns import (
-    UPRIGHT,
-    columns_stand_fast,
-    foot_of,
-    ground_beneath,
-    level_at,
-    levels_by_part,
-    parts_of,
-    side_of,
-    standing_fast,
-    standing_of,
-)
 from dembound.disks.contacts.layout import lay_out
 from dembound.disks.contacts.pairs import plain_contacts
 from dembound.disks.faces.cut import with_joints
@@ -199,13 +188,10 @@ def build(case: DiskCase) -> DiskScene:
 def _same_in(before: DiskScene, after: DiskScene, seam: Seam) -> np.ndarray:
     """Disks (k,) of the column of a scene before an excavation that those of a column after it were."""
     own = before.seams[min(after.seams.index(seam), len(before.seams) - 1)].disks
-    keys = [
-        each.assembly.tile[disks, 1].astype(np.int64) * len(before.ground.brick.radii)
-        + each.assembly.brick_particle[disks]
-        for each, disks in ((before, own), (after, seam.disks))
-    ]
-    order = np.argsort(keys[0])
-    found: np.ndarray = own.start + order[np.searchsorted(keys[0], keys[1], sorter=order)]
+    both, count = ((before.assembly, own), (after.assembly, seam.disks)), len(before.ground.brick.radii)
+    first, then = (of.tile[disks, 1].astype(np.int64) * count + of.brick_particle[disks] for of, disks in both)
+    order = np.argsort(first)
+    found: np.ndarray = own.start + order[np.searchsorted(first, then, sorter=order)]
     return found
 
 
@@ -225,8 +211,8 @@ def _scene(
     """
     body, beyond = assembly, case.outside_sides
     seams: tuple[Seam, ...] = ()
-    around = ground_beneath(case, ground) if set(beyond) == {"bottom"} else ground
-    standing = standing_of(case, ground, body, floors)
+    around = columns.ground_beneath(case, ground) if set(beyond) == {"bottom"} else ground
+    standing = columns.standing_of(case, ground, body, floors)
     outline = None
     if beyond:
         slit = len(standing) > 1 or (case.incident is not None and bool(floors))
@@ -243,41 +229,23 @@ def _scene(
     assembly, seams = with_layers(ground, assembly, seams)
     assembly = assembly if groups is None else groups.typed(assembly, columns_end(seams))
     edges = with_shares(count := len(assembly.radii), edges, case.boundary)
-    slots, rows = lay_out(
-        assembly,
-        (groups or ground).stepped,
-        parts_of(count, seams),
-        mass_factor(count, edges, case.boundary),
-        levels_by_part(case, ground, assembly, seams, case.surface),
-    )
+    fraction = mass_factor(count, edges, case.boundary)
+    levels = columns.levels_by_part(case, ground, assembly, seams, case.surface)
+    slots, rows = lay_out(assembly, (groups or ground).stepped, columns.parts_of(count, seams), fraction, levels)
     outside, layout = None, slots
     if outline is not None:
         outside = surroundings_of(around, body, outline, slots, columns_end(seams), tuple(each.twin for each in seams))
         layout = outside.laid_out(layout)
     feet: list[Surroundings] = []
     for seam in seams if "bottom" in beyond else ():
-        feet.append(foot_of(case, ground, assembly, seam, layout, outline if len(seams) > 1 else None))
+        feet.append(columns.foot_of(case, ground, assembly, seam, layout, outline if len(seams) > 1 else None))
         layout = feet[-1].laid_out(layout)
     waves = None if outside is None else undisturbed(case, ground, outside)
     monitors, between = monitors_of(case, ground, assembly, seams, outside, waves)
-    scene = DiskScene(
-        case=case,
-        ground=ground,
-        assembly=assembly,
-        rows=rows,
-        edges=edges,
-        supports=SupportBuilder().table(),
-        monitors=monitors,
-        seams=seams,
-        slots=slots,
-        outside=outside,
-        feet=tuple(feet),
-        between=between,
-        ground_waves=waves,
-        surface=case.surface,
-        faces=faces,
-        groups=groups,
-    )
+    beyond_sides = {"outside": outside, "feet": tuple(feet), "between": between, "ground_waves": waves}
+    known: dict[str, Any] = beyond_sides | {"surface": case.surface, "faces": faces, "groups": groups}
+    none = SupportBuilder().table()
+    scene = DiskScene(case, ground, assembly, rows, edges, none, monitors, seams, slots, **known)
     return with_waves(scene, case.wave)
 
 
@@ -289,7 +257,7 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     "outside" is free.
     """
     seam = scene.seams[number]
-    case, ground = scene.case.beside(side_of(seam)), scene.ground.beside(side_of(seam))
+    case, ground = scene.case.beside(columns.side_of(seam)), scene.ground.beside(columns.side_of(seam))
     brick = ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
     medium = boundary_medium(ground.at(case.box[1]), axis=1)
@@ -300,15 +268,15 @@ def column_alone(scene: DiskScene, number: int = 0) -> DiskScene:
     }
     if (static := case.static) is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
-        if columns_stand_fast(case, scene.seams):
-            ends = {side: standing_fast(table) for side, table in ends.items()}
+        if columns.columns_stand_fast(case, scene.seams):
+            ends = {side: columns.standing_fast(table) for side, table in ends.items()}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.is_everywhere)
     without: dict[str, Any] = {"load": everywhere, "group": (), "hole": (), "wall": (), "joint": (), "monitor": ()}
     alone = replace(case, boundary=sides | upright, static=static, ground=case.ground.level(), **without)
     column = Standing((), seam.top).tiled(brick, case.column_rows[1], case.box[:2])
-    alone_scene = _scene(alone, ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
-    surface = None if scene.surface is None else level_at(scene.surface, seam)
+    alone_scene = _scene(alone, ground, column, find_edges(column, columns.UPRIGHT, case.packing.regular_sides))
+    surface = None if scene.surface is None else columns.level_at(scene.surface, seam)
     intact = scene.intact is not None and bool(scene.intact[seam.disks].all())
     return replace(alone_scene, surface=surface, all_intact=intact)
 

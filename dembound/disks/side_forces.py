@@ -122,14 +122,8 @@ def _in_seam(scene: DiskBody, seam: Seam, ends: CutContacts, begin: int) -> np.n
     """Whether a free-field column exerts the forces of contact ends (e,); begin : number of the body's first disk."""
     whole = len(scene.ground.brick.pairs)
     owner = np.repeat(seam.node - begin, seam.contact_counts)
-    keys = [
-        (2 * node + second) * whole + kind
-        for node, kind, second in (
-            (owner, seam.contact_type % whole, seam.twin_is_second),
-            (ends.node, ends.contact_type, ends.is_second),
-        )
-    ]
-    there: np.ndarray = np.isin(keys[1], keys[0])
+    across = (2 * owner + seam.twin_is_second) * whole + seam.contact_type % whole
+    there: np.ndarray = np.isin((2 * ends.node + ends.is_second) * whole + ends.contact_type, across)
     return there
 
 
@@ -191,17 +185,9 @@ def _ends(
     first, second = body.pairs[halved].T.astype(np.int64)
     side = _side_along(body, edges, first, second)
     for near, far, is_second in ((first, second, False), (second, first, True)):
-        found.append(
-            CutContacts(
-                node=near,
-                contact_type=kind,
-                is_second=np.full(len(kind), is_second),
-                other=body.brick_particle[far].astype(np.int64),
-                tile=body.tile[far].astype(np.int64),
-                image=(body.tile[far] - body.tile[near]).astype(np.int64),
-                side=side,
-            )
-        )
+        image = (body.tile[far] - body.tile[near]).astype(np.int64)
+        other, tile = body.brick_particle[far].astype(np.int64), body.tile[far].astype(np.int64)
+        found.append(CutContacts(near, kind, np.full(len(kind), is_second), other, tile, image, side))
     joined = {name: np.concatenate([getattr(each, name) for each in found]) for name in vars(cut)}
     return CutContacts(**joined), np.repeat([1.0, 0.5], [len(cut.node), 2 * len(kind)])
 

@@ -33,13 +33,9 @@ ARMS = {True: 17.0, False: 46.0}
 """Nanoseconds of a step of a disk by three relaxation arms of its bonds, in rows of copies or one by one."""
 
 
-def time_per_disk(scene: DiskScene) -> float:
-    """Nanoseconds of a step per disk of a scene."""
-    return _time_per_disk(scene, scene.has_history)
-
-
-def _time_per_disk(scene: DiskScene, has_history: bool) -> float:
-    """Nanoseconds of a step per disk, under the law with a history or the elastic one before it."""
+def time_per_disk(scene: DiskScene, has_history: bool | None = None) -> float:
+    """Nanoseconds of a step per disk; has_history : under the elastic law before its own; None: under its own."""
+    has_history = scene.has_history if has_history is None else has_history
     in_rows = scene.slots is not None and not scene.slots.is_plain
     damped = DAMPED if scene.ground.is_damped else 0.0
     damped = ARMS[in_rows] if scene.ground.relaxes else damped
@@ -52,7 +48,7 @@ def slower(scene: DiskScene) -> Slower | None:
     if not scene.has_history:
         return None
     case, begun = scene.case, sum(times_of_scene(scene).values())
-    first = begun - (time_per_disk(scene) - _time_per_disk(scene, not case.begins_elastic)) * scene.disk_count
+    first = begun - (time_per_disk(scene) - time_per_disk(scene, not case.begins_elastic)) * scene.disk_count
     breaks, bonded = can_break(case.materials), all(each.moduli.pb_emod > 0.0 for each in scene.ground.materials)
     if bonded and not breaks:
         return Slower("once contacts open or slide", first, begun) if first < begun else None

@@ -52,14 +52,10 @@ def trials_of_disks(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[st
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
         plain = replace(plain, load=(NOTHING,) if whole.seams else ())
         if len(whole.seams) > 1:  # kept only under waves
-            plain = replace(
-                plain, boundary=case.boundary, wave={name: _still(wave) for name, wave in case.wave.items()}
-            )
-    words += (
-        left_out(case)
-        + ["no walls"] * bool(case.wall)
-        + ["no static stage: contacts begin as packed"] * (case.static is not None)
-    )
+            waves = {name: _still(wave) for name, wave in case.wave.items()}
+            plain = replace(plain, boundary=case.boundary, wave=waves)
+    words += left_out(case) + ["no walls"] * bool(case.wall)
+    words += ["no static stage: contacts begin as packed"] * (case.static is not None)
     if len(whole.seams) > 1:  # of other columns on each side, which meet in the continuum below
         words = ["the whole scene, as the ground has two heights", *words]
     elif not full:
@@ -123,12 +119,5 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
         words.append("springs that depend on the distance of a source are those nearest to it")
     words += ["no holes, whose free walls do not lower the limit"] * bool(case.holes)
     words += ["no joints, which are softer than the contacts that they replace"] * bool(case.joint)
-    return replace(
-        case,
-        boundary=stiffest,
-        packing=case.packing.with_copies(*fewer),
-        group=(),
-        hole=(),
-        joint=(),
-        ground=case.ground.level(),
-    ), words
+    case = replace(case, boundary=stiffest, packing=case.packing.with_copies(*fewer), ground=case.ground.level())
+    return replace(case, group=(), hole=(), joint=()), words

@@ -93,9 +93,8 @@ class Column:
         # returned: B/A at the top of each layer; gained: A at its bottom over A at the top of the next one
         late = 1j * omega * (self.mass or 0.0) / impedances[0]
         returned, gained = [np.zeros_like(late) if self.mass is None else (1.0 - late) / (1.0 + late)], []
-        for layer, turn, above, below in zip(
-            self.layers[:-1], waves[:-1], impedances[:-1], impedances[1:], strict=True
-        ):
+        between = zip(self.layers[:-1], waves[:-1], impedances[:-1], impedances[1:], strict=True)
+        for layer, turn, above, below in between:
             back, alpha = returned[-1] * np.exp(-2.0 * turn * layer.thickness), above / below
             gained.append(2.0 / (1.0 + alpha + (1.0 - alpha) * back))
             returned.append(0.5 * (1.0 - alpha + (1.0 + alpha) * back) * gained[-1])

@@ -194,10 +194,11 @@ def buried_explosion(
         raise ValueError("the place is at the source, where the motion is infinite")
     times = np.asarray(times, dtype=float)
     rays = _rays(abs(distance), depth, source_depth, solid)
-    panels = FEWEST_PANELS, MOST_PANELS
-    found = refined(
-        lambda number: _sum(rays, times, moment_rate, number), panels, tolerance, "Garvin's integral", "rate"
-    )
+
+    def integral(panels: int) -> np.ndarray:
+        return _sum(rays, times, moment_rate, panels)
+
+    found = refined(integral, (FEWEST_PANELS, MOST_PANELS), tolerance, "Garvin's integral", "rate")
     found[0] *= np.sign(distance)
     return found / (2.0 * math.pi * solid.uniaxial)
 

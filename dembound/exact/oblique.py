@@ -131,10 +131,8 @@ class ObliqueMotion:
 
     def _amplitudes(self) -> np.ndarray:
         """The amplitudes (l, k, 4) of all layers in the window."""
-        frequencies = self._histories.window.frequencies
-        return self._histories.kept(
-            "amplitudes", lambda: np.array(amplitudes(self._beds, self._incident, frequencies, self._mass))
-        )
+        known = self._beds, self._incident, self._histories.window.frequencies, self._mass
+        return self._histories.kept("amplitudes", lambda: np.array(amplitudes(*known)))
 
 
 @dataclass(frozen=True)

@@ -181,10 +181,8 @@ class _Cavity:
         factor = np.where(n == 0, 1.0, 2.0) * (-1.0) ** n
         factor = -factor if self.kind == "p" else factor  # of φ, and of −ψ
         wave = _Radial(speed / s**2 * factor * from_ratios(ive(0, z) * np.exp(z.real), ratios), n + z * ratios)
-        unit = [
-            _Radial(np.ones((orders, len(s))), n - s / c * a * wall)
-            for c, wall in zip((self.solid.p_wave_speed, self.solid.s_wave_speed), at_wall, strict=True)
-        ]
+        speeds = zip((self.solid.p_wave_speed, self.solid.s_wave_speed), at_wall, strict=True)
+        unit = [_Radial(np.ones((orders, len(s))), n - s / c * a * wall) for c, wall in speeds]
         pairs = ((wave, none) if self.kind == "p" else (none, wave)), (unit[0], none), (none, unit[1])
         (t, t_shear), (p, p_shear), (q, q_shear) = (self._fields(s, a, *pair)[[2, 4]] for pair in pairs)
         determinant = p * q_shear - q * p_shear

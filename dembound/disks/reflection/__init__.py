@@ -71,11 +71,8 @@ class Measured:
 
 def measured_sides(case: DiskCase) -> list[str]:
     """The sides that represent the medium or rock beyond; raises CaseError if there are none."""
-    sides = [
-        side
-        for side, table in case.boundary.items()
-        if (table.is_artificial or table.is_interface) and not _is_below_surface(case, side)
-    ]
+    stands_for = [side for side, table in case.boundary.items() if table.is_artificial or table.is_interface]
+    sides = [side for side in stands_for if not _is_below_surface(case, side)]
     if not sides:
         raise CaseError(["boundary: has no side that absorbs; choose another one with --side"])
     return sides
@@ -146,18 +143,14 @@ def measure_side(
     best = {motion: homogenised_beta(scene, side, motion) for motion in own}  # nan where the motion is held
     known = {motion: beta for motion, beta in own.items() if table.is_interface and np.isfinite(best[motion])}
     rock = {motion: reflected(beta, best[motion]).real for motion, beta in known.items()}
-    unmatched = not table.is_interface and any(
-        abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items()
-    )
+    differs = any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
+    unmatched = differs and not table.is_interface
     scenes = [scene, *([_matched(scene, side)] if unmatched else [])]
     if quick:
         found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
         return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {}, rock)
-    step, row, other = (
-        choose_step(whole)[0],
-        BrickInRow(ground, side),
-        None if table.is_interface else _as_continuum(case, side),
-    )
+    step, row = choose_step(whole)[0], BrickInRow(ground, side)
+    other = None if table.is_interface else _as_continuum(case, side)
     ends: list[End] = [end_of(each, row) for each in scenes]
     at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
     if other is not None and at_once:
@@ -217,14 +210,11 @@ def _in_layer(case: DiskCase, side: str, layer: str | None) -> DiskCase:
     if len(whole.layer) < 2:
         return case
     if (names := layers_beside(case, side)) and layer not in names:
-        raise CaseError(
-            [f"boundary.{side}: meets several layers, and reflects by layer; name one of {', '.join(names)}"]
-        )
-    number = (
-        case.layer_names.index(layer)
-        if layer and layer in names
-        else case.layer_at(case.box[3 if side == "top" else 1])
-    )
+        said = f"meets several layers, and reflects by layer; name one of {', '.join(names)}"
+        raise CaseError([f"boundary.{side}: {said}"])
+    number = case.layer_at(case.box[3 if side == "top" else 1])
+    if layer and layer in names:
+        number = case.layer_names.index(layer)
     alone = case.uniform_at([case.box[3], *case.layer_planes][number] - case.packing.radius)
     return replace(alone, run=case.run.model_copy(update={"time_step": choose_step(build(whole))[0]}))
 

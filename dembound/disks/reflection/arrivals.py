@@ -64,10 +64,8 @@ def over_spectrum(shares: np.ndarray, frequencies: np.ndarray, signal: Signal | 
     """
     weights = np.ones(len(frequencies)) if signal is None else _weights(signal, tuple(frequencies.tolist()))
     known = np.where(np.isfinite(shares), weights[:, None], 0.0)
-    total = known.sum(axis=0)
-    return np.divide(
-        (known * np.nan_to_num(shares)).sum(axis=0), total, out=np.full(len(total), np.nan), where=total > 0
-    )
+    total, sums = known.sum(axis=0), (known * np.nan_to_num(shares)).sum(axis=0)
+    return np.divide(sums, total, out=np.full(len(total), np.nan), where=total > 0)
 
 
 @lru_cache(maxsize=64)

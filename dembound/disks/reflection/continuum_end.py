@@ -79,9 +79,8 @@ class Elements:
         across = self._mesh.elements[:, self._layer.axis]
         _, first, kind = np.unique(across, return_index=True, return_inverse=True)
         each = np.stack([self._of_element(element, oscillation) for element in first])[kind.ravel()]
-        rows, columns = (
-            np.broadcast_to(of, each.shape).ravel() for of in (self._places[:, :, None], self._places[:, None, :])
-        )
+        both = self._places[:, :, None], self._places[:, None, :]
+        rows, columns = (np.broadcast_to(of, each.shape).ravel() for of in both)
         every = self.count + len(self.imaged)
         return coo_matrix((each.ravel(), (rows, columns)), shape=(every, every)).tocsc()
 
@@ -141,15 +140,9 @@ def copies_of(brick: Brick, count: int, axis: int) -> Brick:
     shift = np.repeat(np.arange(count), len(brick.radii))[:, None] * (brick.size * period)
     edge_rows = np.tile(brick.edge_rows, (count, 1))
     edge_rows[len(brick.radii) :, axis] = False
-    return replace(
-        brick,
-        size=brick.size * (1 + (count - 1) * period),
-        positions=np.tile(brick.positions, (count, 1)) + shift,
-        radii=np.tile(brick.radii, count),
-        pairs=pairs,
-        images=images,
-        edge_rows=edge_rows,
-    )
+    size, positions = brick.size * (1 + (count - 1) * period), np.tile(brick.positions, (count, 1)) + shift
+    several = replace(brick, size=size, positions=positions, radii=np.tile(brick.radii, count))
+    return replace(several, pairs=pairs, images=images, edge_rows=edge_rows)
 
 
 class ContinuumEnd:
@@ -225,9 +218,8 @@ class ContinuumEnd:
         beyond = np.floor((wall.bonds.point[:, along] - mesh.origin[along]) / mesh.size[along])
         ahead = (elements.periods[wall.element] + beyond[:, None]).astype(int)
         row = (ties * np.arange(3)[:, None] + np.arange(ties))[:, :, None, None]
-        row, numbers, ahead = (
-            np.broadcast_to(each, of_nodes.shape) for each in (row, elements.numbers(wall.element), ahead[:, None, :])
-        )
+        each = row, elements.numbers(wall.element), ahead[:, None, :]
+        row, numbers, ahead = (np.broadcast_to(values, of_nodes.shape) for values in each)
         found = {}
         for periods in np.unique(ahead).tolist():
             found[periods] = np.zeros((3 * ties, elements.count))
@@ -294,14 +286,9 @@ def _mesh(outside: Surroundings, row: BrickInRow, assembly: Assembly) -> Mesh:
     element[1 - axis] = period / cells[1 - axis]
     origin = row.ground.brick.mass_offset.copy()
     origin[axis] += assembly.size[axis] if is_outwards(row.side) > 0 else -cells[axis] * deep
-    return Mesh.uniform(
-        order=settings.order,
-        element=(element[0], element[1]),
-        cells=(cells[0], cells[1]),
-        origin=(float(origin[0]), float(origin[1])),
-        layer=Around(**layer),
-        periodic=(axis == 1, axis == 0),
-    )
+    sizes, begin = (element[0], element[1]), (float(origin[0]), float(origin[1]))
+    places = {"origin": begin, "layer": Around(**layer), "periodic": (axis == 1, axis == 0)}
+    return Mesh.uniform(order=settings.order, element=sizes, cells=(cells[0], cells[1]), **places)
 
 
 def _layer(outside: Surroundings, side: str) -> Layer:

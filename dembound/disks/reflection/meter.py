@@ -69,9 +69,7 @@ class Reflections:
 def homogenised_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) -> HomogenisedWave | None:
     """The wave of a type along a direction (2,) in the equivalent continuum (Christoffel's equation), None if held."""
     free = [component for component in (0, 1) if component not in ground.held]
-    gradients = np.array([[GRADIENTS.index(a + b) for b in "xy"] for a in "xy"])
-    tensor = np.nan_to_num(ground.material_tensor)[gradients[:, :, None, None], gradients]  # ab, cd
-    matrix = np.einsum("abcd,b,d->ac", tensor, direction, direction)[np.ix_(free, free)]
+    matrix = contracted(ground, direction, direction)[np.ix_(free, free)]
     squares, shapes = np.linalg.eigh(0.5 * (matrix + matrix.T))
     polarisations = np.zeros((2, len(free)))
     polarisations[free] = shapes
@@ -82,6 +80,13 @@ def homogenised_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) 
         return None
     speed = math.sqrt(squares[found[0]] / ground.density)
     return HomogenisedWave(kind, direction / speed, polarisations[:, found[0]])
+
+
+def contracted(ground: PackedMaterial, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """C_abcd of the equivalent continuum contracted with two vectors on b and d, (2, 2) Pa."""
+    gradients = np.array([[GRADIENTS.index(a + b) for b in "xy"] for a in "xy"])
+    tensor = np.nan_to_num(ground.material_tensor)[gradients[:, :, None, None], gradients]
+    return np.einsum("abcd,b,d->ac", tensor, first, second)
 
 
 class End(Protocol):

@@ -188,9 +188,8 @@ def _last_block(matrix: csc_matrix, first: int) -> np.ndarray:
         if last.min() >= 0:
             product = factors.L[first:, first:].toarray() @ factors.U[first:, first:].toarray()
             return product[np.ix_(last, last)]
-    inner = splu(
-        matrix[:first, :first].tocsc(), permc_spec="MMD_AT_PLUS_A"
-    )  # rows that are not connected change places
+    # rows that are not connected change places
+    inner = splu(matrix[:first, :first].tocsc(), permc_spec="MMD_AT_PLUS_A")
     return matrix[first:, first:].toarray() - matrix[first:, :first] @ inner.solve(matrix[:first, first:].toarray())
 
 

@@ -16,10 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries import normal_axis
-from dembound.disks.material.homogenise import GRADIENTS
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.reflection.bricks import is_outwards
-from dembound.disks.reflection.meter import Kind, Reflections, homogenised_wave
+from dembound.disks.reflection.meter import Kind, Reflections, contracted, homogenised_wave
 from dembound.disks.scene import DiskScene
 
 RUNS = 1e-9
@@ -40,10 +39,8 @@ class Smeared(NamedTuple):
     def of(cls, scene: DiskScene, side: str) -> Smeared:
         """The smeared supports of a scene in which only one side has any."""
         length, table = float(scene.assembly.size[1 - normal_axis(side)]), scene.supports
-        damping, stiffness, held = (
-            np.array([np.sum(values[table.component == axis]) for axis in (0, 1)])
-            for values in (table.damping, table.stiffness, table.prescribed)
-        )
+        each, by_axis = (table.damping, table.stiffness, table.prescribed), [table.component == axis for axis in (0, 1)]
+        damping, stiffness, held = (np.array([np.sum(values[own]) for own in by_axis]) for values in each)
         return cls(damping / length, stiffness / length, held > 0)
 
 
@@ -83,20 +80,17 @@ def _sent_back(
     free = np.array([component for component in (0, 1) if component not in ground.held])
     normal, along = np.zeros((2, 2))
     normal[axis], along[1 - axis] = is_outwards(side), slowness[1 - axis]
-    q, r, t = (
-        _contracted(ground, *pair)[np.ix_(free, free)] for pair in ((normal, normal), (normal, along), (along, along))
-    )
+    pairs = (normal, normal), (normal, along), (along, along)
+    q, r, t = (contracted(ground, *pair)[np.ix_(free, free)] for pair in pairs)
     n, one = len(free), np.eye(len(free))
-    companion = np.block(
-        [[np.zeros((n, n)), one], [-np.linalg.solve(q, np.hstack([t - ground.density * one, r + r.T]))]]
-    )
+    falls = -np.linalg.solve(q, np.hstack([t - ground.density * one, r + r.T]))
+    companion = np.block([[np.zeros((n, n)), one], [falls]])
     roots, shapes = np.linalg.eig(companion.astype(complex))
     shapes = shapes[:n] / np.linalg.norm(shapes[:n], axis=0)
     tractions = np.einsum("ac,cj->aj", q, shapes) * roots + r @ shapes  # times −iω
     flow = np.where(np.abs(roots.imag) < RUNS * np.abs(roots), np.sum(shapes.conj() * tractions, axis=0).real, 0.0)
-    straight = np.abs(along[free] @ shapes + roots * (normal[free] @ shapes)) / np.sqrt(
-        np.abs(roots) ** 2 + along @ along
-    )
+    straight = np.abs(along[free] @ shapes + roots * (normal[free] @ shapes))
+    straight /= np.sqrt(np.abs(roots) ** 2 + along @ along)
     is_p = straight > math.sqrt(0.5)
 
     out = np.flatnonzero((flow > 0.0) & (is_p == (kind == "p")))[0]
@@ -107,10 +101,3 @@ def _sent_back(
     energy = np.abs(amplitude) ** 2 * -flow[back] / flow[out]
     same = is_p[back] == is_p[out]
     return float(energy[same].sum()), float(energy[~same].sum())
-
-
-def _contracted(ground: PackedMaterial, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """C_abcd contracted with two vectors on b and d, (2, 2) Pa."""
-    gradients = np.array([[GRADIENTS.index(a + b) for b in "xy"] for a in "xy"])
-    tensor = np.nan_to_num(ground.material_tensor)[gradients[:, :, None, None], gradients]
-    return np.einsum("abcd,b,d->ac", tensor, first, second)
