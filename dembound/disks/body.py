@@ -313,10 +313,7 @@ class DiskBody(Scene):
         stiff = self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0
         return self.assembly.pairs[stiff]
 
-    @cached_property
-    def bonded(self) -> np.ndarray:
-        """Whether each disk (m,) has a bond as built."""
-        return np.bincount(self.bonds.ravel(), minlength=self.disk_count) > 0
+
 
     @property
     def bearing(self) -> Springs | None:
