@@ -82,21 +82,14 @@ class ElementBlocks:
         return int(np.count_nonzero(self.kinds))
 
     @cached_property
-    def _is_core(self) -> np.ndarray:
-        """(Q,) bool, the points that are inside an element."""
-        core = np.zeros((self.mesh.order + 1,) * 2, dtype=np.bool_)
-        core[1:-1, 1:-1] = True
-        return core.ravel()
-
-    @property
     def core(self) -> np.ndarray:
         """The points inside an element."""
-        return np.flatnonzero(self._is_core)
+        return np.arange((self.mesh.order + 1) ** 2).reshape((self.mesh.order + 1,) * 2)[1:-1, 1:-1].ravel()
 
-    @property
+    @cached_property
     def rim(self) -> np.ndarray:
         """The points on its edges."""
-        return np.flatnonzero(~self._is_core)
+        return np.setdiff1d(np.arange((self.mesh.order + 1) ** 2), self.core)
 
     @cached_property
     def _nodes(self) -> np.ndarray:

@@ -221,21 +221,13 @@ def _with_arms(case: DiskCase, z: SceneSizes) -> dict[str, float]:
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     """Bytes of motion, ledger and record of the stepped scene, its pairs, and a snapshot of the whole scene."""
     has_history, damping = _has_history(case), case.damping
-    counts, remembers = _with_arms(case, z), case.is_damped and not case.relaxes
+    counts, remembers, settles = _with_arms(case, z), case.is_damped and not case.relaxes, case.static is not None
     if remembers:
         counts["memory"] = damping.memories * z.slots
-    moving = total(
-        counts,
-        *("motion", "ledger", "record"),
-        peaks=case.output.peaks,
-        strain_energy=not has_history,
-        loads=bool(case.load) or has_history,
-        change=has_history,
-        settled=case.static is not None,
-        damping=remembers,
-        damped_rest=remembers and case.static is not None,
-        drag=remembers and damping.type == "rayleigh",
-    )
+    asked = {"peaks": case.output.peaks, "loads": bool(case.load) or has_history, "settled": settles}
+    of_law = {"strain_energy": not has_history, "change": has_history, "damping": remembers}
+    damped = {"damped_rest": remembers and settles, "drag": remembers and damping.type == "rayleigh"}
+    moving = total(counts, "motion", "ledger", "record", **asked, **of_law, **damped)
     pairs = pairs_bytes(case, z) if has_history else 0.0
     fields = total(whole.counts, "fields", contact_count=has_history)
     if case.output.stress:

@@ -191,8 +191,7 @@ def _same_in(before: DiskScene, after: DiskScene, seam: Seam) -> np.ndarray:
     both, count = ((before.assembly, own), (after.assembly, seam.disks)), len(before.ground.brick.radii)
     first, then = (of.tile[disks, 1].astype(np.int64) * count + of.brick_particle[disks] for of, disks in both)
     order = np.argsort(first)
-    found: np.ndarray = own.start + order[np.searchsorted(first, then, sorter=order)]
-    return found
+    return np.asarray(own.start + order[np.searchsorted(first, then, sorter=order)])
 
 
 def _scene(

@@ -42,8 +42,7 @@ class SideForces:
 
     def under(self, stress: np.ndarray) -> np.ndarray:
         """Forces and moments (3, k) under a stress (3,) Pa, including the stress of the packing as built."""
-        forces: np.ndarray = self.per_stress @ stress + self.as_built
-        return forces
+        return np.asarray(self.per_stress @ stress + self.as_built)
 
 
 def side_forces(scene: DiskBody) -> dict[str, SideForces]:
@@ -104,8 +103,7 @@ def _at_rest(
     x : (e,) m, their places, see `AtRest.at`.
     """
     if not at_rest.slides:
-        pulled: np.ndarray = np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights, x))
-        return pulled
+        return np.asarray(np.einsum("cts,st->ct", _per_stress(ground, bonds), at_rest.at(heights, x)))
     pull, shear, bending, _ = rest_forces(ground, at_rest, ends.contact_type, heights, x)
     bending = np.where(ends.is_second, -bending, bending)
     (nx, ny), arm = bonds.normal, bonds.arm
@@ -123,8 +121,7 @@ def _in_seam(scene: DiskBody, seam: Seam, ends: CutContacts, begin: int) -> np.n
     whole = len(scene.ground.brick.pairs)
     owner = np.repeat(seam.node - begin, seam.contact_counts)
     across = (2 * owner + seam.twin_is_second) * whole + seam.contact_type % whole
-    there: np.ndarray = np.isin((2 * ends.node + ends.is_second) * whole + ends.contact_type, across)
-    return there
+    return np.asarray(np.isin((2 * ends.node + ends.is_second) * whole + ends.contact_type, across))
 
 
 def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:

@@ -143,8 +143,7 @@ class Column:
         decay = np.exp(-rate * time_step * np.arange(len(motion)))
         frequencies = np.fft.rfftfreq(count, time_step) - 1j * rate / (2.0 * math.pi)
         spectrum = np.fft.rfft(motion * decay, count) * self.transfer(frequencies, depth, over)
-        found: np.ndarray = np.fft.irfft(spectrum, count)[: len(motion)] / decay
-        return found
+        return np.asarray(np.fft.irfft(spectrum, count)[: len(motion)] / decay)
 
 
 Quantity = Literal["displacement", "velocity", "gradient", "rate", "traction", "impulse", "relaxed", "relaxed_rate"]

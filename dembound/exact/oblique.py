@@ -43,8 +43,7 @@ class Bed:
 
     def late(self, frequencies: np.ndarray) -> np.ndarray:
         """Factors (k, 4) of waves on their way through the layer, at frequencies (k,) Hz."""
-        factors: np.ndarray = np.exp(-2j * math.pi * np.outer(frequencies, self.thickness * np.abs(self.slowness)))
-        return factors
+        return np.asarray(np.exp(-2j * math.pi * np.outer(frequencies, self.thickness * np.abs(self.slowness))))
 
 
 def amplitudes(

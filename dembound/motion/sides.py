@@ -104,14 +104,10 @@ class NodeSides:
     def origin(self, datum: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at the start, displacements (3, n)."""
         if self._origin is None or self._origin[0] is not datum:
-            self._origin = datum, self._mean_of(datum)
+            # copies, row after row in memory, have one order of terms in their sums
+            each = [(weight * datum[:, node].copy()).sum(axis=1) for node, weight in self._members]
+            self._origin = datum, np.array(each).reshape(-1, 3)
         return self._origin[1]
-
-    def _mean_of(self, displacement: np.ndarray) -> np.ndarray:
-        """Mean displacement (s, 3) of every side at displacements (3, n)."""
-        # copies, row after row in memory, have one order of terms in their sums
-        each = [(weight * displacement[:, node].copy()).sum(axis=1) for node, weight in self._members]
-        return np.array(each).reshape(-1, 3)
 
     def stored(self, u: np.ndarray, datum: np.ndarray) -> np.ndarray:
         """Energy (s,) J in the springs of every side at displacements u (3, slots), from rest at datum (3, n)."""
@@ -277,8 +273,7 @@ def _in_proportion(
         here = np.searchsorted(node, nodes)
         row[:, here] = shown
         total[:, here] += acting
-    parts: np.ndarray = np.divide(forces, total, out=share.copy(), where=total != 0.0)
-    return parts
+    return np.asarray(np.divide(forces, total, out=share.copy(), where=total != 0.0))
 
 
 def _of_rest(on: np.ndarray, across: np.ndarray) -> np.ndarray:

@@ -72,8 +72,7 @@ class StressAtRest:
         within = np.clip(tops - heights, 0.0, thick)
         vertical = self.growth @ within
         ratio = self.k0[self.layer_of(heights)]
-        stress: np.ndarray = self.uniform[:, None] + np.stack([ratio * vertical, vertical, np.zeros_like(vertical)])
-        return stress
+        return np.asarray(self.uniform[:, None] + np.stack([ratio * vertical, vertical, np.zeros_like(vertical)]))
 
     def layer_of(self, heights: np.ndarray) -> np.ndarray:
         """Number of the layer, from the surface, at heights (k,) m; the upper one between two, the first above all."""
@@ -204,8 +203,7 @@ def gradients_of_stresses(tensor: np.ndarray) -> np.ndarray:
     The smallest of those that differ by a rotation, which the packing does not resist.
     """
     stresses = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    found: np.ndarray = np.linalg.lstsq(tensor, stresses, rcond=1e-9)[0]
-    return found
+    return np.asarray(np.linalg.lstsq(tensor, stresses, rcond=1e-9)[0])
 
 
 def pair_forces(ground: PackedMaterial) -> np.ndarray:
@@ -278,8 +276,7 @@ def levels_of(assembly: Assembly, ground: PackedMaterial, at_rest: AtRest | None
     heights, kind = np.unique(np.round(least[is_level] - at_rest.low, 6), return_inverse=True)
     number = len(heights) + np.arange(len(left))
     number[is_level] = kind
-    found: np.ndarray = row * (len(heights) + len(left)) + number[tile]
-    return found
+    return np.asarray(row * (len(heights) + len(left)) + number[tile])
 
 
 def stressed(

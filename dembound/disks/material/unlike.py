@@ -86,8 +86,7 @@ class UnlikeGround(LayeredGround):
 
     def is_right(self, x: np.ndarray) -> np.ndarray:
         """Whether disks at places x (n,) m belong to the right side."""
-        right: np.ndarray = x + self._rounding >= self.meet
-        return right
+        return np.asarray(x + self._rounding >= self.meet)
 
     def zone_of(self, places: np.ndarray) -> np.ndarray:
         """Number of the zone of disks at places (n, 2) m."""

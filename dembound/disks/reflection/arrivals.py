@@ -76,8 +76,7 @@ def _weights(signal: Signal, frequencies: tuple[float, ...]) -> np.ndarray:
     below = place.astype(int)
     count = len(frequencies) + 1
     upper = np.bincount(below + 1, (place - below) * energy, count)
-    weights: np.ndarray = (np.bincount(below, (1.0 - place + below) * energy, count) + upper)[:-1]
-    return weights
+    return np.asarray((np.bincount(below, (1.0 - place + below) * energy, count) + upper)[:-1])
 
 
 def arrivals_of(case: DiskCase, side: str, ground: PackedMaterial) -> list[Arrival]:

@@ -97,15 +97,13 @@ class Blocks:
     def middles(self) -> np.ndarray:
         """Middle (nx, ny, 2) m of each block."""
         at = np.stack(np.meshgrid(*(np.arange(count) for count in self.count), indexing="ij"), axis=-1)
-        middles: np.ndarray = self.low + (at + 0.5) * self.size
-        return middles
+        return np.asarray(self.low + (at + 0.5) * self.size)
 
     def near(self, box: tuple[float, float, float, float]) -> np.ndarray:
         """Mask (nx, ny) of blocks within the width of the rim of a box left, bottom, right, top, m."""
         low, high = np.array(box[:2]) - RIM * self.diameter, np.array(box[2:]) + RIM * self.diameter
         half = 0.5 * self.size
-        there: np.ndarray = np.asarray(((self.middles + half > low) & (self.middles - half < high)).all(axis=-1))
-        return there
+        return np.asarray(np.asarray(((self.middles + half > low) & (self.middles - half < high)).all(axis=-1)))
 
 
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:

@@ -107,7 +107,9 @@ class StaticScene:
                     _support(scene, table, part, medium, builder)
                 if scene.seams and columns_stand_fast(scene.case, scene.seams):
                     columns = scene.edges[side].only(scene.edges[side].nodes < scene.column_count, 0.0)
-                    _hold_too(standing_fast(table), table, columns, builder)
+                    held = {*table.prescribed(columns.axis), *builder.held}
+                    for component in sorted({*standing_fast(table).prescribed(columns.axis)} - held):
+                        builder.add(columns.nodes, component, prescribed=True)
         self.static = static
         stressed = scene.at_rest is not None
         self._tractions = None if static.stress is None or stressed else Tractions(scene, static.stress)
@@ -121,8 +123,8 @@ class StaticScene:
         if self._tractions is not None:
             self.held[self._tractions.nodes] = True
         supports: Supports = self.scene.supports
-        held = supports.node[supports.prescribed]  # dashpots have no force at rest
-        self.held[held[held < scene.disk_count]] = True
+        nodes = supports.node[supports.prescribed]  # dashpots have no force at rest
+        self.held[nodes[nodes < scene.disk_count]] = True
         self._floats = len(supports) == 0
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.disk_count, axis=1)
         across = (supports.component < 2) & supports.prescribed
@@ -178,12 +180,6 @@ def _support(scene: DiskScene, table: Boundary, edge: Edge, medium: BoundaryMedi
         builder.held = components
         table.support(edge.only(chosen, edge.length), medium, scene.case.wave, builder)
     builder.held = held
-
-
-def _hold_too(table: Boundary, other: Boundary, edge: Edge, builder: SupportBuilder) -> None:
-    """Add rows that hold the disks of a side as one table does, but another one does not."""
-    for component in sorted({*table.prescribed(edge.axis)} - {*other.prescribed(edge.axis), *builder.held}):
-        builder.add(edge.nodes, component, prescribed=True)
 
 
 def without_own_continua(scene: DiskScene) -> DiskScene:

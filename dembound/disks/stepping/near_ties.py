@@ -48,8 +48,8 @@ def sides_near(scene: DiskBody) -> np.ndarray:
     tree = cKDTree(positions[np.concatenate([disks for _, disks in tied])])
     reach = TIE_DISTANCE * (1.0 + ROUNDING) * scene.ground.brick.mean_diameter
     _, nearest = tree.query(positions, distance_upper_bound=reach)
-    found: np.ndarray = np.append(side, -1)[nearest]  # the number of all tied disks where none is in reach
-    return found
+    # the number of all tied disks where none is in reach
+    return np.asarray(np.append(side, -1)[nearest])
 
 
 def strongest_force(scene: DiskBody) -> float:

@@ -82,8 +82,7 @@ def _of_ground(scene: DiskBody, wall: Wall, times: np.ndarray) -> np.ndarray:
     assert scene.ground_waves is not None
     surface = scene.outside.free_surface
     place = np.array([[x, y if surface is None or scene.outside.levels else min(y, surface[0])]])
-    motion: np.ndarray = scene.ground_waves.motion("velocity", times, place)[:, 0, :2]
-    return motion
+    return np.asarray(scene.ground_waves.motion("velocity", times, place)[:, 0, :2])
 
 
 def leaders(scene: DiskBody) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -306,8 +305,7 @@ class WallPart(Part):
     @property
     def sizes(self) -> np.ndarray:
         """Sizes (m,) N of the last forces of walls on the disks near them."""
-        found: np.ndarray = np.hypot(*self._walls.force[:2])
-        return found
+        return np.asarray(np.hypot(*self._walls.force[:2]))
 
     def add_forces(self, force: np.ndarray) -> None:
         """Add the last forces of walls on disks to those of all nodes, force (3, n)."""

@@ -79,8 +79,7 @@ class Surroundings:
 
     def is_right(self, places: np.ndarray) -> np.ndarray:
         """Whether the elements at places (k, 2) m are right of the body, also below it, (k,)."""
-        right: np.ndarray = self.body.mesh.is_right[located(self.body.mesh, places)[0]]
-        return right
+        return np.asarray(self.body.mesh.is_right[located(self.body.mesh, places)[0]])
 
     def height_at(self, places: np.ndarray) -> np.ndarray:
         """Heights (k,) m up to which there is ground at places (k, 2) m beyond lower sides; infinite at others."""

@@ -106,8 +106,7 @@ def elements_on_slit(mesh: Mesh) -> np.ndarray:
 
 def depths_on_slit(mesh: Mesh) -> np.ndarray:
     """Depth (n,) of the nodes on a slit in the layer below, over its thickness, from the bottom."""
-    depth: np.ndarray = -np.minimum(mesh.axes[1].depth[: len(mesh.doubled[0])], 0.0)
-    return depth
+    return np.asarray(-np.minimum(mesh.axes[1].depth[: len(mesh.doubled[0])], 0.0))
 
 
 def weights_on_slit(body: GridBody) -> np.ndarray:
@@ -124,8 +123,7 @@ def nodes_on_slit(outside: Surroundings | None) -> np.ndarray:
     if outside is None or not outside.body.mesh.slit:
         return np.zeros(0, dtype=np.int64)
     both = np.concatenate(outside.body.mesh.doubled)
-    moving: np.ndarray = outside.first + np.sort(both[~outside.body.mesh.held[both]])
-    return moving
+    return np.asarray(outside.first + np.sort(both[~outside.body.mesh.held[both]]))
 
 
 def _across(foot: Surroundings) -> tuple[np.ndarray, np.ndarray]:

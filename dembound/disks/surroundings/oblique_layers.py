@@ -94,8 +94,7 @@ class NearObliqueLayers:
 
     def velocities(self, behind: float) -> np.ndarray:
         """Matrix (count, count) 1/s from the amplitudes to the velocities, `behind` (s) earlier."""
-        found: np.ndarray = block_diag(*(near.velocities(behind) for near in self.layers.values()))
-        return found
+        return np.asarray(block_diag(*(near.velocities(behind) for near in self.layers.values())))
 
     def strained(self, places: np.ndarray, values: np.ndarray, heights: np.ndarray | None = None) -> np.ndarray:
         """Values (3, 4, d) per unit gradient at places (d, 2) m, per unit of amplitudes: (3, d, count).
