@@ -62,7 +62,8 @@ def test_findings_are_kept_over_a_restart(bar) -> None:
     watched.look(4, moved=12.0, turned=0.2)
     again = SideWatch(watched.scene, STEP)
     saved = {name: values.copy() for name, values in watched.watch.saved_arrays().items()}
-    again.restore(saved, watched.balance.sides)
+    again.restore(saved)
+    again.sides = watched.balance.sides
     assert again.describe() == watched.watch.describe()  # also where the run ends before it looks again
     again.look(watched.balance, watched.system.contacts, np.zeros((3, watched.scene.count)), 5, 0.0, 100.0)
     assert again.describe() == watched.watch.describe()
