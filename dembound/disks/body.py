@@ -313,8 +313,6 @@ class DiskBody(Scene):
         stiff = self.ground.law.column(constants, "bond_kn")[self.assembly.contact_type] > 0.0
         return self.assembly.pairs[stiff]
 
-
-
     @property
     def bearing(self) -> Springs | None:
         """The springs of sides on relative motion; None without any."""

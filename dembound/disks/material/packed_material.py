@@ -120,8 +120,6 @@ class PackedMaterial:
         """Stiffness of the springs with which it is stepped over `stiffness`; 1 without damping."""
         return 1.0 if self.mechanisms is None else self.mechanisms.unrelaxed
 
-
-
     @property
     def relaxes(self) -> bool:
         """Whether intact bonds have relaxation arms, by which ground that can break is damped."""
