@@ -54,9 +54,7 @@ class Dashpots(Keeping):
         help='factor β of the dashpots along the side\'s normal; "matched": that of the impedance of the packing',
     )
     beta_s: Given = quantity(
-        "matched",
-        means="factor of dashpots",
-        help="factor β of the dashpots across the side's normal",
+        "matched", means="factor of dashpots", help="factor β of the dashpots across the side's normal"
     )
     rock: Rock | None = quantity(
         None, help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"

@@ -37,10 +37,7 @@ _MODULUS: Advice = (
     ("young", f"write young and poisson, of the body, or emod and pb_emod, of contacts and bonds, Pa{_MORE}"),
     ("", "give [material] a p_wave_speed, or emod and pb_emod; [bar] youngs_modulus"),
 )
-_OF_SHEAR: Advice = (
-    ("youngs_modulus", _BAR_RATIO),
-    ("shear", f"write bulk and shear, Pa, of the body{_MORE}"),
-)
+_OF_SHEAR: Advice = (("youngs_modulus", _BAR_RATIO), ("shear", f"write bulk and shear, Pa, of the body{_MORE}"))
 _DENSITY: Advice = (("density", "write density, kg/m³, of the body as a whole: a particle's is larger, by the pores"),)
 _POISSON: Advice = (
     ("young_modulus", "write poisson_ratio"),
@@ -256,10 +253,7 @@ NAMES: dict[tuple[str, ...], Advice] = {
         ("", '[[hole]] has a shape and stage = "after"'),
     ),
     ("walls", "facet", "facets", "floor", "plate"): (
-        (
-            "material",
-            f"[[wall]] has points and a velocity; [boundary.bottom] and other sides have a type{_MORE}",
-        ),
+        ("material", f"[[wall]] has points and a velocity; [boundary.bottom] and other sides have a type{_MORE}"),
     ),
     ("fix", "fixed", "fixity"): (("beta_p", 'write type = "fixed" or "roller"'),),
     ("quiet", "absorbing", "absorb", "pml", "free_field", "boundaries", "stacey", "apply"): (

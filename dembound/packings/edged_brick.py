@@ -18,10 +18,7 @@ class EdgedBrick(DensePacking):
 
     pattern: Literal["C"] = "C"
     edge_radius: float = quantity(
-        unit="m",
-        means="size of a particle",
-        help="radius of the row disks, adjusted to whole disks",
-        gt=0.0,
+        unit="m", means="size of a particle", help="radius of the row disks, adjusted to whole disks", gt=0.0
     )
 
     @property

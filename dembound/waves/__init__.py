@@ -15,14 +15,4 @@ from dembound.waves.wave import Wave
 TYPES = (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, FileWave)
 """All types of waves."""
 
-__all__ = [
-    "TYPES",
-    "Constant",
-    "Cosine",
-    "CubicSpline",
-    "FileWave",
-    "Ricker",
-    "SineBurst",
-    "Triangle",
-    "Wave",
-]
+__all__ = ["TYPES", "Constant", "Cosine", "CubicSpline", "FileWave", "Ricker", "SineBurst", "Triangle", "Wave"]

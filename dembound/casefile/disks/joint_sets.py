@@ -57,12 +57,7 @@ class JointTable(JointKeys):
         None, unit="m", means="length", help="distance from one line of a set to the next, across them", gt=0.0
     )
     persistence: float = quantity(
-        1.0,
-        unit="1",
-        means="share",
-        help="share of the lines of a set that is cut; the rest is rock",
-        gt=0.0,
-        le=1.0,
+        1.0, unit="1", means="share", help="share of the lines of a set that is cut; the rest is rock", gt=0.0, le=1.0
     )
     trace: float | None = quantity(
         None,

@@ -240,12 +240,7 @@ class OutsideTable(Table):
         4, unit="1", means="count", help="order of the elements, nodes along a side less one", ge=3, le=6
     )
     accuracy: float = quantity(
-        1e-3,
-        unit="1",
-        means="share",
-        help="error of velocities for which the keys left out are chosen",
-        gt=0.0,
-        lt=1.0,
+        1e-3, unit="1", means="share", help="error of velocities for which the keys left out are chosen", gt=0.0, lt=1.0
     )
     element: float | None = quantity(
         None, unit="m", means="length", help="largest side of an element; absent: from waves and accuracy", gt=0.0

@@ -32,9 +32,7 @@ class Load(Table):
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
     force: Vector | None = quantity(
-        None,
-        unit="N/m",
-        help="force [fx, fy] on all its particles together; needs position or region",
+        None, unit="N/m", help="force [fx, fy] on all its particles together; needs position or region"
     )
     acceleration: Vector | None = quantity(None, unit="m/s²", help="force [ax, ay] per mass of each particle")
     position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")

@@ -146,9 +146,7 @@ class MaterialTable(Table):
         le=1e4,
     )
     law: LawName = quantity(
-        "elastic",
-        unit="1",
-        help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help),
+        "elastic", unit="1", help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help)
     )
     pb_ten: float | None = quantity(
         None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
@@ -172,9 +170,7 @@ class MaterialTable(Table):
         le=1.0,
     )
     pb_scatter: Scatter | None = quantity(
-        None,
-        unit="1",
-        help="scatter of both strengths from bond to bond, a table; absent: none",
+        None, unit="1", help="scatter of both strengths from bond to bond, a table; absent: none"
     )
     locked_in: float | None = quantity(
         None,

@@ -76,10 +76,7 @@ class Wall(Table):
         help='"incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`',
     )
     at: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="place in the ground whose motion it has; absent: the middle of its box",
+        None, unit="m", means="place", help="place in the ground whose motion it has; absent: the middle of its box"
     )
     until: float | None = quantity(
         None, unit="s", help="time at which it stops; absent: it moves to the end of the run", gt=0.0

@@ -277,10 +277,7 @@ def _quality_facts(name: str, found: Mechanisms, *, relaxes: bool) -> Entries:
         f"speeds hold at {with_unit(found.frequency, 'Hz')}",
     )
     step = "" if name else f": the step is {found.unrelaxed**-0.5:.3g} times as long"  # in layers the stiffest does
-    yield (
-        f"unrelaxed stiffness{name}",
-        f"{found.unrelaxed:.4g} times that of the wave speeds{step}",
-    )
+    yield (f"unrelaxed stiffness{name}", f"{found.unrelaxed:.4g} times that of the wave speeds{step}")
     if relaxes:
         yield (
             f"stiffness at rest{name}",
