@@ -42,22 +42,15 @@ class Keeping(Boundary):
 class Holding(Keeping):
     """A side that prescribes motion, of all its particles or, as a platen or jaw, of those `within` a range."""
 
-    within: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="range [x0, x1] of a bottom or top, [y0, y1] of a left "
-        "or right side in which it holds particles, others are free; absent: all",
-    )
+    within: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """range [x0, x1] of a bottom or top, [y0, y1] of a left or right side in which it holds particles, others are free;
+    absent: all"""
 
-    reactions: Literal["kept", "none"] = quantity(
-        "kept",
-        help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
-    )
+    reactions: Literal["kept", "none"] = quantity("kept")
+    """of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away"""
 
-    until: float | None = quantity(
-        None, unit="s", help="of a static side: time of the run at which kept reactions end; absent: never", ge=0.0
-    )
+    until: float | None = quantity(None, unit="s", ge=0.0)
+    """of a static side: time of the run at which kept reactions end; absent: never"""
 
     @field_validator("within")
     @classmethod
@@ -96,7 +89,8 @@ class Holding(Keeping):
 class Wall(Holding):
     """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
 
-    artificial: bool = quantity(True, help="ground or rock goes on beyond the side")
+    artificial: bool = quantity(True)
+    """ground or rock goes on beyond the side"""
 
     @property
     def is_artificial(self) -> bool:

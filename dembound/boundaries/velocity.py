@@ -31,9 +31,8 @@ class Velocity(Holding, Driven):
 
     type: Literal["velocity"]
 
-    hold: tuple[Component, ...] = quantity(
-        ("normal", "shear"), help="components of motion that it prescribes; others are free", min_length=1
-    )
+    hold: tuple[Component, ...] = quantity(("normal", "shear"), min_length=1)
+    """components of motion that it prescribes; others are free"""
 
     @model_validator(mode="after")
     def _holds_what_it_moves(self) -> "Velocity":

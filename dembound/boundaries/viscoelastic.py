@@ -24,35 +24,18 @@ class Springs(Boundary):
 
     beyond_dashpots: ClassVar[str] = "viscoelastic sides without their springs"
 
-    alpha_n: float = quantity(
-        1.0, means="factor of springs", help="factor α_n of the springs along the side's normal", ge=0.0
-    )
-    alpha_s: float = quantity(
-        0.5, means="factor of springs", help="factor α_s of the springs across the side's normal", ge=0.0
-    )
-    young_modulus: float | None = quantity(
-        None,
-        unit="Pa",
-        means="modulus",
-        help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium, or of rock",
-        gt=0.0,
-    )
-    poisson_ratio: float | None = quantity(
-        None,
-        means="Poisson's ratio",
-        help="ν of the springs' G; absent: 0 where young_modulus is given",
-        gt=-1.0,
-        le=0.5,
-    )
-    distance: float | None = quantity(
-        None, unit="m", means="length", help="distance L from the source of the waves; give this or source", gt=0.0
-    )
-    source: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="place [x, y] the waves come from; L is each particle's own distance from there",
-    )
+    alpha_n: float = quantity(1.0, means="factor of springs", ge=0.0)
+    """factor α_n of the springs along the side's normal"""
+    alpha_s: float = quantity(0.5, means="factor of springs", ge=0.0)
+    """factor α_s of the springs across the side's normal"""
+    young_modulus: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium, or of rock"""
+    poisson_ratio: float | None = quantity(None, means="Poisson's ratio", gt=-1.0, le=0.5)
+    """ν of the springs' G; absent: 0 where young_modulus is given"""
+    distance: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """distance L from the source of the waves; give this or source"""
+    source: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """place [x, y] the waves come from; L is each particle's own distance from there"""
 
     @model_validator(mode="after")
     def _fit_together(self) -> "Springs":

@@ -16,9 +16,12 @@ from dembound.table import Table, quantity
 class Rock(Table):
     """The rock of a half-space, whose dashpots ρ_r c_r replace those of the ground; right at normal incidence."""
 
-    density: float = quantity(..., unit="kg/m³", help="density ρ of the rock", gt=0.0)
-    p_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its P waves", gt=0.0)
-    s_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its S waves", gt=0.0)
+    density: float = quantity(unit="kg/m³", gt=0.0)
+    """density ρ of the rock"""
+    p_wave_speed: float = quantity(unit="m/s", means="wave speed", gt=0.0)
+    """speed of its P waves"""
+    s_wave_speed: float = quantity(unit="m/s", means="wave speed", gt=0.0)
+    """speed of its S waves"""
 
     @model_validator(mode="after")
     def _is_stable(self) -> "Rock":
@@ -48,18 +51,14 @@ class Dashpots(Keeping):
 
     may_halve: ClassVar[bool] = True
 
-    beta_p: Given = quantity(
-        "matched",
-        means="factor of dashpots",
-        help='factor β of the dashpots along the side\'s normal; "matched": that of the impedance of the packing',
-    )
-    beta_s: Given = quantity(
-        "matched", means="factor of dashpots", help="factor β of the dashpots across the side's normal"
-    )
-    rock: Rock | None = quantity(
-        None, help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"
-    )
-    half_mass: bool = quantity(False, help="the particles are half cells; sides of disks in one row, not free_field")
+    beta_p: Given = quantity("matched", means="factor of dashpots")
+    """factor β of the dashpots along the side's normal; "matched": that of the impedance of the packing"""
+    beta_s: Given = quantity("matched", means="factor of dashpots")
+    """factor β of the dashpots across the side's normal"""
+    rock: Rock | None = quantity(None)
+    """rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"""
+    half_mass: bool = quantity(False)
+    """the particles are half cells; sides of disks in one row, not free_field"""
 
     @model_validator(mode="after")
     def _rock_or_factors(self) -> Self:
@@ -131,19 +130,18 @@ class Bearing(Table):
     a bottom without a column, its mean motion; L is the length of the side, G = ρc_s² of the dashpots' medium.
     """
 
-    alpha_n: float = quantity(1.0, means="factor of springs", help="factor α of the springs along the normal", ge=0.0)
-    alpha_s: float = quantity(0.5, means="factor of springs", help="factor α of the springs across the normal", ge=0.0)
+    alpha_n: float = quantity(1.0, means="factor of springs", ge=0.0)
+    """factor α of the springs along the normal"""
+    alpha_s: float = quantity(0.5, means="factor of springs", ge=0.0)
+    """factor α of the springs across the normal"""
 
 
 class BearingDashpots(Dashpots):
     """Dashpots that, at the bottom and beside a free-field column, may have springs on relative motion beside them."""
 
-    bearing: bool | Bearing | None = quantity(
-        None,
-        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
-        "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
-        "an intact zone",
-    )
+    bearing: bool | Bearing | None = quantity(None)
+    """whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which bear what
+    forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has an intact zone"""
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Springs of a side beyond which no ground is known to move."""

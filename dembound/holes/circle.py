@@ -13,7 +13,8 @@ class Circle(Centred):
     """A tunnel or a borehole."""
 
     type: Literal["circle"]
-    radius: float = quantity(..., unit="m", means="length", help="radius", gt=0.0)
+    radius: float = quantity(unit="m", means="length", gt=0.0)
+    """radius"""
 
     def depth(self, positions: np.ndarray) -> np.ndarray:
         """Distances (k,) m of positions (k, 2) m from the circle, negative outside."""

@@ -31,16 +31,15 @@ class Hole(Table, ABC):
     """
 
     type: str
-    name: FileName = quantity(..., help="name in loads and messages")
-    stage: Literal["before", "after", "run"] = quantity(
-        "before",
-        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes '
-        'on; "run": excavated at a time of the run',
-    )
-    time: float | None = quantity(
-        None, unit="s", help='time of the run at which its disks vanish, with stage = "run"', ge=0.0
-    )
-    keep: Literal["outside", "inside"] = quantity("outside", help="which particles remain")
+    name: FileName = quantity()
+    """name in loads and messages"""
+    stage: Literal["before", "after", "run"] = quantity("before")
+    """ "before": the body is built with the hole; "after": excavated after the static stage, which then goes on; "run":
+    excavated at a time of the run"""
+    time: float | None = quantity(None, unit="s", ge=0.0)
+    """time of the run at which its disks vanish, with stage = "run" """
+    keep: Literal["outside", "inside"] = quantity("outside")
+    """which particles remain"""
 
     @model_validator(mode="after")
     def _in_time(self) -> Self:
@@ -99,7 +98,8 @@ class Hole(Table, ABC):
 class Centred(Hole):
     """A hole with a centre."""
 
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
+    centre: tuple[float, float] = quantity(unit="m", means="place")
+    """centre [x, y]"""
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

@@ -16,9 +16,8 @@ class Polygon(Hole):
     """A section drawn point by point, such as a horseshoe tunnel or the valley above a slope."""
 
     type: Literal["polygon"]
-    points: Points = quantity(
-        ..., unit="m", means="place", help="corners [[x, y], …] in order, the last joined to the first"
-    )
+    points: Points = quantity(unit="m", means="place")
+    """corners [[x, y], …] in order, the last joined to the first"""
 
     @field_validator("points")
     @classmethod

@@ -20,7 +20,8 @@ class Rectangle(Hole):
     """A drift, a shaft or a trench, upright."""
 
     type: Literal["rectangle"]
-    corners: Box = quantity(..., unit="m", means="place", help="[x0, y0, x1, y1], lower left and upper right corner")
+    corners: Box = quantity(unit="m", means="place")
+    """[x0, y0, x1, y1], lower left and upper right corner"""
 
     @field_validator("corners")
     @classmethod

@@ -58,15 +58,14 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
-    bricks: Count | None = quantity(None, means="count", help="number of bricks along x and y, instead of size")
-    origin: tuple[float, float] = quantity(
-        (0.0, 0.0),
-        unit="m",
-        means="place",
-        help="lower left corner of the disks; all places of a case are in these coordinates",
-    )
-    radius: float = quantity(unit="m", means=SIZE, help="radius, mean of a random packing", gt=0.0)
+    size: Extent | None = quantity(None, unit="m", means="length")
+    """width and height of the scene, whole bricks"""
+    bricks: Count | None = quantity(None, means="count")
+    """number of bricks along x and y, instead of size"""
+    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place")
+    """lower left corner of the disks; all places of a case are in these coordinates"""
+    radius: float = quantity(unit="m", means=SIZE, gt=0.0)
+    """radius, mean of a random packing"""
 
     @property
     @abstractmethod
@@ -179,17 +178,16 @@ class DensePacking(Packing):
 
     packed_under_stress: ClassVar[bool] = True
 
-    radius_ratio: float = quantity(means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0)
-    brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
-    seed: int = quantity(0, means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
-    confining_stress: float | None = quantity(
-        None,
-        unit="Pa",
-        means="stress",
-        help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
-        gt=0.0,
-    )
-    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts, too", ge=0.0)
+    radius_ratio: float = quantity(means="ratio of radii", ge=1.0, le=4.0)
+    """largest over smallest radius"""
+    brick: Extent = quantity(unit="m", means="length")
+    """width and height of the periodic brick"""
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """seed of the random start"""
+    confining_stress: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
+    """pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it"""
+    bond_gap: float = quantity(0.0, unit="m", means="length", ge=0.0)
+    """gaps up to this are contacts, too"""
 
     @property
     def brick_size(self) -> tuple[float, float]:

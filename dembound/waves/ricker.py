@@ -22,7 +22,8 @@ class Ricker(Shape):
     """v = M(1 − 2a)e^(−a), a = [πf(t − t₀)]²: a crest M at t₀ = `start` + 1.5/f between troughs of 0.446 M."""
 
     type: Literal["ricker"]
-    frequency: float = quantity(..., unit="Hz", help="frequency of the spectrum's crest", gt=0.0)
+    frequency: float = quantity(unit="Hz", gt=0.0)
+    """frequency of the spectrum's crest"""
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
         a = np.square(math.pi * (self.frequency * since - DELAY))

@@ -20,8 +20,10 @@ class Triangle(Shape):
     """One one-sided pulse: v = M t/t_r during the rise t_r, then M(1 − (t − t_r)/t_f) over the fall t_f."""
 
     type: Literal["triangle"]
-    rise: float = quantity(..., unit="s", means="period", help="time from the start to the crest", gt=0.0)
-    fall: float = quantity(..., unit="s", means="period", help="time from the crest to the end", gt=0.0)
+    rise: float = quantity(unit="s", means="period", gt=0.0)
+    """time from the start to the crest"""
+    fall: float = quantity(unit="s", means="period", gt=0.0)
+    """time from the crest to the end"""
 
     def _legs(self, since: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Part of the rise that has passed, and part of the fall that remains."""

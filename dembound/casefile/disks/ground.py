@@ -29,23 +29,15 @@ class Ground(Table):
     Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
     """
 
-    size: Extent | None = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="width and height, whole bricks high; absent: the disks fill all of the ground",
-    )
-    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
-    surface: Points | str | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the "
-        "folder of the case; level over four diameters at the sides of the disks; absent: the top of the disks",
-    )
-    meet: float | None = quantity(
-        None, unit="m", means="place", help='x of the vertical plane between layers of side "left" and "right"'
-    )
+    size: Extent | None = quantity(None, unit="m", means="length")
+    """width and height, whole bricks high; absent: the disks fill all of the ground"""
+    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place")
+    """lower left corner of the ground"""
+    surface: Points | str | None = quantity(None, unit="m", means="place")
+    """free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the folder of
+    the case; level over four diameters at the sides of the disks; absent: the top of the disks"""
+    meet: float | None = quantity(None, unit="m", means="place")
+    """x of the vertical plane between layers of side "left" and "right" """
 
     _points: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")

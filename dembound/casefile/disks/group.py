@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError, model_validator
 
-from dembound.casefile.disks.layer import Differing, as_in_material, problems_of_material
+from dembound.casefile.disks.layer import OF_PARTS, Differing, problems_of_material, with_keys_of_material
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.stiffness import RATIO_KEYS, STIFFNESS_KEYS
 from dembound.casefile.disks.targets import with_history
@@ -31,7 +31,7 @@ MOST = 32
 """Largest number of groups."""
 
 
-class Group(Differing):
+class GroupTable(Differing):
     """The disks of a part of the ground, with strengths, friction or moduli of their own.
 
     Absent keys are those of the ground there; of groups that overlap, those of the later one hold. Contacts and bonds
@@ -39,43 +39,17 @@ class Group(Differing):
     its friction and strengths hold from then on.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the group in messages and pictures")
-    region: Box | None = quantity(
-        None, unit="m", means="place", help="rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"
-    )
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region",
-    )
-    time: float | None = quantity(
-        None,
-        unit="s",
-        help="time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always",
-        ge=0.0,
-    )
-    p_wave_speed: float | None = as_in_material("p_wave_speed")
-    s_wave_speed: float | None = as_in_material("s_wave_speed")
-    young: float | None = as_in_material("young")
-    poisson: float | None = as_in_material("poisson")
-    bulk: float | None = as_in_material("bulk")
-    shear: float | None = as_in_material("shear")
-    plane: Literal["strain", "stress"] | None = as_in_material("plane")
-    along: Literal["isotropic", "x", "y"] | None = as_in_material("along")
-    emod: float | None = as_in_material("emod")
-    pb_emod: float | None = as_in_material("pb_emod")
-    kratio: float | None = as_in_material("kratio")
-    pb_kratio: float | None = as_in_material("pb_kratio")
-    fric: float | None = as_in_material("fric")
-    rr_fric: float | None = as_in_material("rr_fric")
-    pb_ten: float | None = as_in_material("pb_ten")
-    pb_coh: float | None = as_in_material("pb_coh")
-    pb_fa: float | None = as_in_material("pb_fa")
-    pb_mcf: float | None = as_in_material("pb_mcf")
+    name: FileName = quantity()
+    """name of the group in messages and pictures"""
+    region: Box | None = quantity(None, unit="m", means="place")
+    """rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"""
+    points: Points | None = quantity(None, unit="m", means="place")
+    """corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region"""
+    time: float | None = quantity(None, unit="s", ge=0.0)
+    """time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always"""
 
     @model_validator(mode="after")
-    def _one_place(self) -> "Group":
+    def _one_place(self) -> "GroupTable":
         problems = []
         if (self.region is None) == (self.points is None):
             missing = self.points is None
@@ -111,6 +85,12 @@ class Group(Differing):
     def is_stiff(self) -> bool:
         """Whether its springs are its own."""
         return not self.own.keys().isdisjoint(MODULI)
+
+
+if TYPE_CHECKING:
+    Group = GroupTable
+else:
+    Group = with_keys_of_material(GroupTable, "Group", OF_PARTS)
 
 
 def group_problems(tables: Mapping[str, Any]) -> Iterator[str]:
@@ -151,7 +131,7 @@ def _materials(layers: Sequence[Any], material: Material) -> list[Material]:
 
 def _of_springs(place: str, group: Group, own: Material, beside: Material) -> Iterator[str]:
     """A friction that gives contacts a shear stiffness, or takes it, and a change of it in time."""
-    if group.fric is not None and (own.fric > 0.0) != (beside.fric > 0.0) and not group.is_stiff:
+    if "fric" in group.own and (own.fric > 0.0) != (beside.fric > 0.0) and not group.is_stiff:
         yield (
             f"{place}.fric: is {own.fric:g}, and {beside.fric:g} in the ground beside it: without friction contacts "
             "have no shear stiffness; give both some, such as 1e-6"

@@ -36,34 +36,24 @@ STRENGTH_KEYS = ("ten", "coh")
 class JointKeys(Table):
     """The name of a joint, or of a set, and the constants of its faces."""
 
-    name: FileName = quantity(
-        ..., unit="1", help="name of the joint in messages and results; of a set without the numbers"
-    )
-    kn: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="normal stiffness per area", gt=0.0)
-    ks: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="shear stiffness per area", gt=0.0)
-    fric: float | None = quantity(
-        None,
-        unit="1",
-        means="friction coefficient",
-        help="friction coefficient; absent: the joint stays closed, and does not slide",
-        ge=0.0,
-    )
-    ten: float = quantity(0.0, unit="Pa", means="strength", help="tensile strength", ge=0.0)
-    coh: float = quantity(0.0, unit="Pa", means="strength", help="cohesion", ge=0.0)
-    dilation: float = quantity(
-        0.0,
-        unit="degrees",
-        means="direction",
-        help="angle at which the faces ride up on each other as they slide, below that of fric",
-        ge=0.0,
-        lt=90.0,
-    )
-    dilation_end: float | None = quantity(
-        None, unit="m", means="length", help="slip at which they rise no more; absent: at none", gt=0.0
-    )
-    dashpot: float = quantity(
-        1.0, unit="1", means="factor", help="normal dashpot of sliding faces, over ρ c_p of the ground", ge=0.0, le=10.0
-    )
+    name: FileName = quantity()
+    """name of the joint in messages and results; of a set without the numbers"""
+    kn: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
+    """normal stiffness per area"""
+    ks: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
+    """shear stiffness per area"""
+    fric: float | None = quantity(None, means="friction coefficient", ge=0.0)
+    """friction coefficient; absent: the joint stays closed, and does not slide"""
+    ten: float = quantity(0.0, unit="Pa", means="strength", ge=0.0)
+    """tensile strength"""
+    coh: float = quantity(0.0, unit="Pa", means="strength", ge=0.0)
+    """cohesion"""
+    dilation: float = quantity(0.0, unit="degrees", means="direction", ge=0.0, lt=90.0)
+    """angle at which the faces ride up on each other as they slide, below that of fric"""
+    dilation_end: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """slip at which they rise no more; absent: at none"""
+    dashpot: float = quantity(1.0, means="factor", ge=0.0, le=10.0)
+    """normal dashpot of sliding faces, over ρ c_p of the ground"""
 
     @model_validator(mode="after")
     def _fails_by_friction(self) -> Self:
@@ -88,9 +78,8 @@ class Joint(JointKeys):
     In a file it may be one of a set, see `joint_sets.JointTable`.
     """
 
-    points: Points = quantity(
-        ..., unit="m", means="place", help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"
-    )
+    points: Points = quantity(unit="m", means="place")
+    """the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"""
 
     _left_out: float = PrivateAttr(0.0)
     _is_of_set: bool = PrivateAttr(False)

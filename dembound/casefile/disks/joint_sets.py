@@ -39,40 +39,20 @@ class JointTable(JointKeys):
     sides; from all others lines stay three diameters away.
     """
 
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip",
-    )
-    dip: float | None = quantity(
-        None,
-        unit="degrees",
-        means="direction",
-        help="of a set: the angle below the horizontal at which its lines fall towards +x",
-        ge=-90.0,
-        le=90.0,
-    )
-    spacing: float | None = quantity(
-        None, unit="m", means="length", help="distance from one line of a set to the next, across them", gt=0.0
-    )
-    persistence: float = quantity(
-        1.0, unit="1", means="share", help="share of the lines of a set that is cut; the rest is rock", gt=0.0, le=1.0
-    )
-    trace: float | None = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them",
-        gt=0.0,
-    )
-    region: Box | Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere",
-    )
-    seed: int = quantity(0, unit="1", means="count", help="seed of the places of a set", ge=0, le=LARGEST_WHOLE)
+    points: Points | None = quantity(None, unit="m", means="place")
+    """the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip"""
+    dip: float | None = quantity(None, unit="degrees", means="direction", ge=-90.0, le=90.0)
+    """of a set: the angle below the horizontal at which its lines fall towards +x"""
+    spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """distance from one line of a set to the next, across them"""
+    persistence: float = quantity(1.0, means="share", gt=0.0, le=1.0)
+    """share of the lines of a set that is cut; the rest is rock"""
+    trace: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them"""
+    region: Box | Points | None = quantity(None, unit="m", means="place")
+    """where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere"""
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """seed of the places of a set"""
 
     @model_validator(mode="after")
     def _line_or_set(self) -> Self:

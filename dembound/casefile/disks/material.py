@@ -44,151 +44,71 @@ class MaterialTable(Table):
     stress at rest, `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
-    density: float = quantity(
-        ..., unit="kg/m³", help="bulk density: mass over scene area; absent: every [[layer]] has its own", gt=0.0
-    )
-    p_wave_speed: float | None = quantity(
-        None, unit="m/s", means="wave speed", help="P-wave speed from which the moduli follow", gt=0.0
-    )
-    match: Literal["lattice", "assembly"] = quantity(
-        "lattice",
-        unit="1",
-        help='body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
-    )
-    contact_share: float = quantity(
-        0.5,
-        unit="1",
-        means="share",
-        help="share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only",
-        ge=0.0,
-        le=1.0,
-    )
-    s_wave_speed: float | None = quantity(
-        None,
-        unit="m/s",
-        means="wave speed",
-        help="S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own",
-        gt=0.0,
-    )
-    young: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus of the body", gt=0.0)
-    poisson: float | None = quantity(
-        None, unit="1", means="Poisson's ratio", help="Poisson's ratio of the body", gt=-1.0, lt=1.0
-    )
-    bulk: float | None = quantity(None, unit="Pa", means="modulus", help="bulk modulus of the body", gt=0.0)
-    shear: float | None = quantity(None, unit="Pa", means="modulus", help="shear modulus of the body", gt=0.0)
-    plane: Literal["strain", "stress"] = quantity(
-        "strain",
-        unit="1",
-        help='which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample',
-    )
-    along: Literal["isotropic", "x", "y"] = quantity(
-        "isotropic",
-        unit="1",
-        help='direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it',
-    )
-    emod: float | None = quantity(
-        None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
-    )
-    pb_emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus Ē_c of the parallel bonds", ge=0.0)
-    kratio: float = quantity(
-        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the contacts", gt=0.0
-    )
-    pb_kratio: float = quantity(
-        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the bonds", gt=0.0
-    )
-    fric: float = quantity(
-        0.0,
-        unit="1",
-        means="friction coefficient",
-        help="friction coefficient of the contacts; at 0 they carry no shear",
-        ge=0.0,
-    )
-    rr_fric: float = quantity(
-        0.0,
-        unit="1",
-        means="friction coefficient",
-        help="resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric",
-        ge=0.0,
-    )
-    pb_rmul: float = quantity(
-        1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
-    )
-    damp: float = quantity(
-        0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
-    )
-    dp_nratio: float = quantity(
-        0.0,
-        unit="1",
-        means="share",
-        help="normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)",
-        ge=0.0,
-        le=1.0,
-    )
-    dp_sratio: float = quantity(
-        0.0,
-        unit="1",
-        means="share",
-        help="shear dashpot of closed contacts over the critical one; needs fric",
-        ge=0.0,
-        le=1.0,
-    )
-    dp_on: Literal["unbonded", "all"] | None = quantity(
-        None,
-        unit="1",
-        help='contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break',
-    )
-    quality_factor: float | None = quantity(
-        None,
-        unit="1",
-        means="quality factor",
-        help="quality factor Q of P and S waves, see [damping]; absent: no damping",
-        ge=2.0,
-        le=1e4,
-    )
+    density: float = quantity(unit="kg/m³", gt=0.0)
+    """bulk density: mass over scene area; absent: every [[layer]] has its own"""
+    p_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """P-wave speed from which the moduli follow"""
+    match: Literal["lattice", "assembly"] = quantity("lattice")
+    """body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x"""
+    contact_share: float = quantity(0.5, means="share", ge=0.0, le=1.0)
+    """share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only"""
+    s_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own"""
+    young: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """Young's modulus of the body"""
+    poisson: float | None = quantity(None, means="Poisson's ratio", gt=-1.0, lt=1.0)
+    """Poisson's ratio of the body"""
+    bulk: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """bulk modulus of the body"""
+    shear: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """shear modulus of the body"""
+    plane: Literal["strain", "stress"] = quantity("strain")
+    """which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample"""
+    along: Literal["isotropic", "x", "y"] = quantity("isotropic")
+    """direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it"""
+    emod: float | None = quantity(None, unit="Pa", means="modulus", ge=0.0)
+    """modulus E_c of the contacts; 0 in pattern A only"""
+    pb_emod: float | None = quantity(None, unit="Pa", means="modulus", ge=0.0)
+    """modulus Ē_c of the parallel bonds"""
+    kratio: float = quantity(1.0, means="normal over shear stiffness", gt=0.0)
+    """normal over shear stiffness of the contacts"""
+    pb_kratio: float = quantity(1.0, means="normal over shear stiffness", gt=0.0)
+    """normal over shear stiffness of the bonds"""
+    fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """friction coefficient of the contacts; at 0 they carry no shear"""
+    rr_fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric"""
+    pb_rmul: float = quantity(1.0, means="bond radius", gt=0.0)
+    """bond radius over the smaller disk's radius"""
+    damp: float = quantity(0.0, means="local damping", ge=0.0, lt=1.0)
+    """local damping coefficient; 0 for waves"""
+    dp_nratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
+    """normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)"""
+    dp_sratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
+    """shear dashpot of closed contacts over the critical one; needs fric"""
+    dp_on: Literal["unbonded", "all"] | None = quantity(None)
+    """contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break"""
+    quality_factor: float | None = quantity(None, means="quality factor", ge=2.0, le=1e4)
+    """quality factor Q of P and S waves, see [damping]; absent: no damping"""
     law: LawName = quantity(
-        "elastic", unit="1", help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help)
+        "elastic", help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help)
     )
-    pb_ten: float | None = quantity(
-        None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
-    )
-    pb_coh: float | None = quantity(
-        None,
-        unit="Pa",
-        means="strength",
-        help="cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear",
-        gt=0.0,
-    )
-    pb_fa: float = quantity(
-        0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
-    )
-    pb_mcf: float = quantity(
-        1.0,
-        unit="1",
-        means="share",
-        help="share of the moment that counts in the stress of bonds (PFC's moment contribution factor)",
-        ge=0.0,
-        le=1.0,
-    )
-    pb_scatter: Scatter | None = quantity(
-        None, unit="1", help="scatter of both strengths from bond to bond, a table; absent: none"
-    )
-    locked_in: float | None = quantity(
-        None,
-        unit="Pa",
-        means="stress",
-        help="pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch",
-        gt=0.0,
-    )
-    geometry: Literal["updated", "reference"] = quantity(
-        "updated",
-        unit="1",
-        help='"updated": normals and arms follow the motion; "reference": intact bonds keep those of the start',
-    )
-    elastic_start: bool = quantity(
-        True,
-        unit="1",
-        help="whether the faster elastic law serves until a contact opens, slips or closes or a bond yields",
-    )
+    pb_ten: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """tensile strength of the bonds; absent: unbreakable in tension"""
+    pb_coh: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear"""
+    pb_fa: float = quantity(0.0, unit="degrees", means="friction angle", ge=0.0, lt=90.0)
+    """friction angle of the bonds; needs pb_coh"""
+    pb_mcf: float = quantity(1.0, means="share", ge=0.0, le=1.0)
+    """share of the moment that counts in the stress of bonds (PFC's moment contribution factor)"""
+    pb_scatter: Scatter | None = quantity(None)
+    """scatter of both strengths from bond to bond, a table; absent: none"""
+    locked_in: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
+    """pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch"""
+    geometry: Literal["updated", "reference"] = quantity("updated")
+    """ "updated": normals and arms follow the motion; "reference": intact bonds keep those of the start"""
+    elastic_start: bool = quantity(True)
+    """whether the faster elastic law serves until a contact opens, slips or closes or a bond yields"""
 
     @model_validator(mode="after")
     def _consistent(self) -> "MaterialTable":

@@ -38,38 +38,20 @@ class MonitorTable(Table):
     Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
     """
 
-    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
-        ..., unit="1", help="name of the history in the results; of a row without the numbers"
-    )
-    position: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="where; between equally near particles the lowest is taken, of these the leftmost",
-    )
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; "
-        "instead of position",
-    )
-    along: Literal["surface"] | None = quantity(
-        None, unit="1", help='"surface": a row along the free surface of the ground, instead of position'
-    )
-    spacing: float | None = quantity(
-        None, unit="m", means="length", help="step along x from one monitor of a row to the next", gt=0.0
-    )
-    from_: float | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        alias="from",
-        help="x of the first; absent: half a step from the left side of the ground",
-    )
-    to: float | None = quantity(
-        None, unit="m", means="place", help="largest x of a row; absent: half a step from its right side"
-    )
+    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()
+    """name of the history in the results; of a row without the numbers"""
+    position: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """where; between equally near particles the lowest is taken, of these the leftmost"""
+    points: Points | None = quantity(None, unit="m", means="place")
+    """corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; instead of position"""
+    along: Literal["surface"] | None = quantity(None)
+    """ "surface": a row along the free surface of the ground, instead of position"""
+    spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """step along x from one monitor of a row to the next"""
+    from_: float | None = quantity(None, unit="m", means="place", alias="from")
+    """x of the first; absent: half a step from the left side of the ground"""
+    to: float | None = quantity(None, unit="m", means="place")
+    """largest x of a row; absent: half a step from its right side"""
 
     @model_validator(mode="after")
     def _place_or_row(self) -> "MonitorTable":

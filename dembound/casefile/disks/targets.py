@@ -19,14 +19,14 @@ class Scatter(Table):
     follows from `packing.seed` and its place in the packing.
     """
 
-    type: Literal["normal", "weibull"] = quantity(..., unit="1", help="distribution of the factors")
-    deviation: float | None = quantity(
-        None, unit="1", means="share", help='standard deviation of "normal" before it is cut off', gt=0.0, le=1.0
-    )
-    shape: float | None = quantity(
-        None, unit="1", means="setting", help='shape (Weibull modulus) of "weibull"', ge=1.0, le=1e3
-    )
-    seed: int = quantity(0, unit="1", means="count", help="other strengths of the same disks", ge=0, le=LARGEST_WHOLE)
+    type: Literal["normal", "weibull"] = quantity()
+    """distribution of the factors"""
+    deviation: float | None = quantity(None, means="share", gt=0.0, le=1.0)
+    """standard deviation of "normal" before it is cut off"""
+    shape: float | None = quantity(None, means="setting", ge=1.0, le=1e3)
+    """shape (Weibull modulus) of "weibull" """
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """other strengths of the same disks"""
 
     @property
     def in_words(self) -> str:
