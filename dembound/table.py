@@ -43,7 +43,7 @@ class Table(BaseModel):
 
     @model_validator(mode="after")
     def _has_no_mistakes(self) -> Self:
-        if found := list(self.mistakes()):
+        if found := dict.fromkeys(self.mistakes()):
             raise ValueError("\n".join(found))
         return self
 

@@ -6,7 +6,7 @@ In such a zone beside a side forces at rest always have ground to act on.
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
@@ -67,11 +67,11 @@ class Holding(Keeping):
                 yield f"boundary.{side}.{key}: is of the static stage; give it to static.boundary.{side}"
         yield from beside_disks(f"boundary.{side}", side, self, tables)
 
-    @model_validator(mode="after")
-    def _ends_once(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """An end of reactions that there are not."""
+        yield from super().mistakes()
         if self.until is not None and self.reactions == "none":
-            raise ValueError('until: is of reactions that are "kept"')
-        return self
+            yield 'until: is of reactions that are "kept"'
 
     def on_whole_side(self) -> Self:
         """The side with all its particles held."""

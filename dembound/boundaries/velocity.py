@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
-from pydantic import model_validator
-
 from dembound.boundaries.boundary import Boundary, Driven
 from dembound.boundaries.edge import Motion
 from dembound.boundaries.fixed import Fixed
@@ -34,12 +32,12 @@ class Velocity(Holding, Driven):
     hold: tuple[Component, ...] = quantity(("normal", "shear"), min_length=1)
     """components of motion that it prescribes; others are free"""
 
-    @model_validator(mode="after")
-    def _holds_what_it_moves(self) -> "Velocity":
-        loose = [f"wave_{motion}" for part, motion in MOTIONS.items() if part not in self.hold and motion in self.waves]
-        if loose:
-            raise ValueError(f"{loose[0]}: moves a component that hold does not name; add it there")
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Waves of components that it does not hold."""
+        yield from super().mistakes()
+        for part, motion in MOTIONS.items():
+            if part not in self.hold and motion in self.waves:
+                yield f"wave_{motion}: moves a component that hold does not name; add it there"
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Components of an end of a bar."""

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import model_validator
 
 from dembound.boundaries.boundary import Boundary, Driven, Place
 from dembound.boundaries.edge import normal_axis, plane_of
@@ -37,13 +36,13 @@ class Springs(Boundary):
     source: tuple[float, float] | None = quantity(None, unit="m", means="place")
     """place [x, y] the waves come from; L is each particle's own distance from there"""
 
-    @model_validator(mode="after")
-    def _fit_together(self) -> "Springs":
+    def mistakes(self) -> Iterator[str]:
+        """A modulus or a distance that is not known."""
+        yield from super().mistakes()
         if self.poisson_ratio is not None and self.young_modulus is None:
-            raise ValueError("poisson_ratio: needs young_modulus; without it G is that of the medium")
+            yield "poisson_ratio: needs young_modulus; without it G is that of the medium"
         if (self.distance is None) == (self.source is None):
-            raise ValueError("must have exactly one of distance and source, which give the distance L")
-        return self
+            yield "must have exactly one of distance and source, which give the distance L"
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """Adds the factors α, the modulus G (Pa) and the distances L (m) of the springs."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dembound.boundaries.boundary import Boundary, Driven
 from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion
@@ -23,11 +23,10 @@ class Rock(Table):
     s_wave_speed: float = quantity(unit="m/s", means="wave speed", gt=0.0)
     """speed of its S waves"""
 
-    @model_validator(mode="after")
-    def _is_stable(self) -> "Rock":
+    def mistakes(self) -> Iterator[str]:
+        """Speeds of no solid."""
         if not self.s_wave_speed < self.p_wave_speed:
-            raise ValueError("s_wave_speed: must be below p_wave_speed, as in every elastic solid")
-        return self
+            yield "s_wave_speed: must be below p_wave_speed, as in every elastic solid"
 
     def factors(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
         """β = ρ_r c_r/(ρc)·H/ΣD of an edge, with ρ and c of the medium; 1 where it has no such waves."""
@@ -60,12 +59,11 @@ class Dashpots(Keeping):
     half_mass: bool = quantity(False)
     """the particles are half cells; sides of disks in one row, not free_field"""
 
-    @model_validator(mode="after")
-    def _rock_or_factors(self) -> Self:
-        given = sorted({"beta_p", "beta_s"} & self.model_fields_set)
-        if self.rock is not None and given:
-            raise ValueError(f"rock: gives the factors of both waves; leave out {' and '.join(given)}")
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Factors that are given twice."""
+        yield from super().mistakes()
+        if self.rock is not None and (given := sorted({"beta_p", "beta_s"} & self.model_fields_set)):
+            yield f"rock: gives the factors of both waves; leave out {' and '.join(given)}"
 
     @property
     def factors(self) -> Mapping[Motion, Factor]:

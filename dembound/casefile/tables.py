@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from dembound.table import Table, quantity
 
@@ -97,17 +97,12 @@ class Run(Table):
         times = [key for key in ("silent_for", "peak_for", "rest_for") if (getattr(self, key) or 0.0) > duration]
         return self.model_copy(update={"duration": duration, **dict.fromkeys(times)})
 
-    @model_validator(mode="after")
-    def _ending_keys_have_effect(self) -> "Run":
-        stray = [
-            f'{key}: is only allowed with until = "{until}"'
-            for until, keys in ENDING_KEYS.items()
-            for key in keys
-            if self.until != until and key in self.model_fields_set
-        ]
-        if stray:
-            raise ValueError("\n".join(stray))
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Keys that belong to another end."""
+        for until, keys in ENDING_KEYS.items():
+            for key in keys:
+                if self.until != until and key in self.model_fields_set:
+                    yield f'{key}: is only allowed with until = "{until}"'
 
 
 MOST_SNAPSHOTS = 10_000

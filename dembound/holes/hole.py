@@ -1,12 +1,11 @@
 """The base of all holes: a name, a stage, the particles to remove, and the level floor that they leave at a side."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Literal, NamedTuple, Self
 
 import numpy as np
-from pydantic import model_validator
 
 from dembound.holes.outline import Outline
 from dembound.places import includes
@@ -41,13 +40,10 @@ class Hole(Table, ABC):
     keep: Literal["outside", "inside"] = quantity("outside")
     """which particles remain"""
 
-    @model_validator(mode="after")
-    def _in_time(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """A time of another stage, or none."""
         if (self.stage == "run") != (self.time is not None):
-            raise ValueError(
-                'time: is missing, with stage = "run"' if self.time is None else 'time: needs stage = "run"'
-            )
-        return self
+            yield 'time: is missing, with stage = "run"' if self.time is None else 'time: needs stage = "run"'
 
     @property
     def is_shape(self) -> bool:

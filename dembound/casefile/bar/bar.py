@@ -51,11 +51,10 @@ class BarRange(Table):
     gap: float = quantity(0.0, unit="m", means="gap", ge=0.0)
     """opening of the contact on its left at the start"""
 
-    @model_validator(mode="after")
-    def _gap_of_contact(self) -> "BarRange":
+    def mistakes(self) -> Iterator[str]:
+        """A gap of ranges that are bonded."""
         if self.gap > 0.0 and self.interface != "contact":
-            raise ValueError('gap: is only allowed with interface = "contact"')
-        return self
+            yield 'gap: is only allowed with interface = "contact"'
 
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
@@ -115,20 +114,19 @@ class Bar(Table):
     range: tuple[BarRange, ...] = quantity(())
     """parts of a bar of several materials, from left to right"""
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "Bar":
-        problems = [
-            f"{second}: is not allowed together with {first}"
-            for first, second in PAIRS
-            if getattr(self, first) is not None and getattr(self, second) is not None
-        ]
+    def mistakes(self) -> Iterator[str]:
+        """Keys that are given twice or lack others, and mistakes of ranges."""
+        for first, second in PAIRS:
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                yield f"{second}: is not allowed together with {first}"
         stiffness = list(self._problems_with_stiffness())
-        problems += stiffness
-        problems += self._problems_with_ranges() if self.range else self._problems_with_spacing()
+        yield from stiffness
+        yield from self._problems_with_ranges() if self.range else self._problems_with_spacing()
         if not self.range and not stiffness:
-            problems += list(self._problems_with_rates()) or self._problems_with_cracks()
-        if problems:
-            raise ValueError("\n".join(problems))
+            yield from list(self._problems_with_rates()) or self._problems_with_cracks()
+
+    @model_validator(mode="after")
+    def _as_long_as_its_ranges(self) -> "Bar":
         if self.range and "length" not in self.model_fields_set:
             self.__dict__["length"] = self._whole_length
         return self

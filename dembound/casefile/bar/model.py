@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pydantic import TypeAdapter, model_validator
+from pydantic import TypeAdapter
 
 from dembound.boundaries.edge import normal_axis
 from dembound.casefile.bar.bar import MOST_CELLS, Bar
@@ -58,13 +58,13 @@ class BarRun(Run):
     courant: float | None = quantity(None, means="Courant number", gt=0.0)
     """Courant number ν = cΔt/Δx, instead of a time step"""
 
-    @model_validator(mode="after")
-    def _one_step(self) -> "BarRun":
+    def mistakes(self) -> Iterator[str]:
+        """A step that is given twice."""
+        yield from super().mistakes()
         if self.courant is not None and self.time_step != "auto":
-            raise ValueError("courant: is not allowed together with time_step")
+            yield "courant: is not allowed together with time_step"
         if self.courant is not None and "safety" in self.model_fields_set:
-            raise ValueError("safety: is for an automatic time step, courant gives it")
-        return self
+            yield "safety: is for an automatic time step, courant gives it"
 
 
 FEWEST_CELLS = 3

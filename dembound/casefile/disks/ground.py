@@ -1,17 +1,18 @@
 """The ``[ground]`` table, ground of two heights, and mistakes of holes that depend on other tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic import PrivateAttr
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, is_far, plane_of
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.surface import air_above, points_in_file, require_surface
-from dembound.casefile.messages import choices, corners, numbered, show
+from dembound.casefile.disks.surface import air_above, points_in_file
+from dembound.casefile.messages import choices, corners, counted, numbered, show
 from dembound.casefile.types import LAWS
 from dembound.holes.hole import Floor, Hole, floor_beside
 from dembound.holes.polygon import Points, Polygon
@@ -42,16 +43,19 @@ class Ground(Table):
     _points: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")
 
-    @model_validator(mode="after")
-    def _from_left_to_right(self, info: ValidationInfo) -> "Ground":
-        if self.surface is None:
-            return self
+    def model_post_init(self, context: Mapping[str, Any] | None) -> None:
+        """Reads its surface, if that is in a file."""
         if isinstance(self.surface, str):
-            self._points, self._text = points_in_file(self.surface, info.context or {})
+            self._points, self._text = points_in_file(self.surface, context or {})
         else:
-            self._points = self.surface
-        require_surface(self._points)
-        return self
+            self._points = self.surface or ()
+
+    def mistakes(self) -> Iterator[str]:
+        """Points that are no surface from left to right."""
+        if self.surface is not None and len(self.points) < 2:
+            yield f"surface: has {counted(len(self.points), 'point')}, must have at least two"
+        if any(after < before for (before, _), (after, _) in pairwise(self.points)):
+            yield "surface: must go from left to right, so that no x is less than the one before"
 
     @property
     def files(self) -> dict[str, str]:

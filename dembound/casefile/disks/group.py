@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import ValidationError, model_validator
+from pydantic import ValidationError
 
 from dembound.casefile.disks.layer import OF_PARTS, Differing, problems_of_material, with_keys_of_material
 from dembound.casefile.disks.material import Material
@@ -48,27 +48,20 @@ class GroupTable(Differing):
     time: float | None = quantity(None, unit="s", ge=0.0)
     """time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always"""
 
-    @model_validator(mode="after")
-    def _one_place(self) -> "GroupTable":
-        problems = []
-        if (self.region is None) == (self.points is None):
-            missing = self.points is None
-            problems.append(
-                "region: is missing; give either region or points"
-                if missing
-                else "points: is not allowed together with region"
-            )
+    def mistakes(self) -> Iterator[str]:
+        """Not one place, nothing that differs, or keys that cannot change in time."""
+        if self.region is None and self.points is None:
+            yield "region: is missing; give either region or points"
+        if self.region is not None and self.points is not None:
+            yield "points: is not allowed together with region"
         if self.region is not None and not (self.region[0] < self.region[2] and self.region[1] < self.region[3]):
-            problems.append("region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1")
+            yield "region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1"
         if self.points is not None and len(self.points) < 3:
-            problems.append(f"points: has {len(self.points)}, must have at least three")
+            yield f"points: has {len(self.points)}, must have at least three"
         if not self.own:
-            problems.append("pb_ten: is missing, and any other key of the ground; a group must differ from it")
+            yield "pb_ten: is missing, and any other key of the ground; a group must differ from it"
         if self.time is not None and (fixed := [key for key in self.own if key not in IN_TIME]):
-            problems.append(f"{fixed[0]}: cannot change in a run; leave time out, or give {', '.join(IN_TIME)} alone")
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+            yield f"{fixed[0]}: cannot change in a run; leave time out, or give {', '.join(IN_TIME)} alone"
 
     @cached_property
     def shape(self) -> Polygon | Rectangle:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, normal_axis
@@ -32,23 +32,17 @@ class Damping(Table):
     mechanisms: int = quantity(3, means="count", ge=2, le=6)
     """relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz"""
 
-    @model_validator(mode="after")
-    def _ascending(self) -> "Damping":
+    def mistakes(self) -> Iterator[str]:
+        """A band that does not ascend, and keys of mechanisms without any."""
         if self.band is not None and not 0.0 < LEAST_RATIO * self.band[0] <= self.band[1]:
             low, high = self.band
-            raise ValueError(
+            yield (
                 f"band: is [{low:g}, {high:g}], must be two frequencies above 0, the second at least {LEAST_RATIO:g} "
                 "times the first"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _only_of_mechanisms(self) -> "Damping":
-        if self.type == "rayleigh":
-            given = [key for key in ("frequency", "mechanisms") if key in self.model_fields_set]
-            if given:
-                raise ValueError("\n".join(f'{key}: is only allowed with type = "quality"' for key in given))
-        return self
+        for key in ("frequency", "mechanisms") if self.type == "rayleigh" else ():
+            if key in self.model_fields_set:
+                yield f'{key}: is only allowed with type = "quality"'
 
     @property
     def memories(self) -> int:

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from pydantic import PrivateAttr, field_validator, model_validator
+from pydantic import PrivateAttr, field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.messages import numbered
@@ -55,16 +55,15 @@ class JointKeys(Table):
     dashpot: float = quantity(1.0, means="factor", ge=0.0, le=10.0)
     """normal dashpot of sliding faces, over ρ c_p of the ground"""
 
-    @model_validator(mode="after")
-    def _fails_by_friction(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """Strengths without a friction, and a dilation that it does not allow."""
         if self.fric is None and (given := [key for key in STRENGTH_KEYS if getattr(self, key) > 0.0]):
-            raise ValueError(f"{given[0]}: needs fric, the friction that is left once the joint has failed")
+            yield f"{given[0]}: needs fric, the friction that is left once the joint has failed"
         if self.dilation > 0.0 and math.tan(math.radians(self.dilation)) >= (self.fric or 0.0):
             most = math.degrees(math.atan(self.fric or 0.0))
-            raise ValueError(f"dilation: is {self.dilation:g}, must be below the angle of fric, {most:.4g} (degrees)")
+            yield f"dilation: is {self.dilation:g}, must be below the angle of fric, {most:.4g} (degrees)"
         if self.dilation_end is not None and self.dilation == 0.0:
-            raise ValueError("dilation_end: needs dilation")
-        return self
+            yield "dilation_end: needs dilation"
 
     @property
     def constants(self) -> tuple[object, ...]:

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks.joint import APART, Joint, JointKeys, a_line, distance_to, goes_on
@@ -54,22 +54,24 @@ class JointTable(JointKeys):
     seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
     """seed of the places of a set"""
 
-    @model_validator(mode="after")
-    def _line_or_set(self) -> Self:
-        problems = []
+    def mistakes(self) -> Iterator[str]:
+        """Neither a line nor a set, or keys of the one or the other."""
+        yield from super().mistakes()
         if self.dip is None:
-            problems += ["points: is missing; give it, or dip"] if self.points is None else []
-            problems += [f"{key}: is for a set; give dip, too" for key in OF_SETS if key in self.model_fields_set]
+            if self.points is None:
+                yield "points: is missing; give it, or dip"
+            yield from (f"{key}: is for a set; give dip, too" for key in OF_SETS if key in self.model_fields_set)
         else:
-            problems += ["points: is not allowed together with dip"] if self.points is not None else []
-            problems += ["spacing: is missing; a set needs it"] if self.spacing is None else []
-            problems += ["trace: is missing; bridges need it"] if self.persistence < 1.0 and self.trace is None else []
-            problems += ["trace: needs persistence below 1"] if self.persistence == 1.0 and self.trace else []
+            if self.points is not None:
+                yield "points: is not allowed together with dip"
+            if self.spacing is None:
+                yield "spacing: is missing; a set needs it"
+            if self.persistence < 1.0 and self.trace is None:
+                yield "trace: is missing; bridges need it"
+            if self.persistence == 1.0 and self.trace:
+                yield "trace: needs persistence below 1"
         if self.corners is not None and len(self.corners) < 3:
-            problems.append("region: must be a box or at least three corners")
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+            yield "region: must be a box or at least three corners"
 
     @field_validator("points")
     @classmethod

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal, Optional
 
-from pydantic import ValidationError, create_model, model_validator
+from pydantic import ValidationError, create_model
 
 from dembound.casefile.disks.material import TARGET_KEYS, Material
 from dembound.casefile.disks.stiffness import MODULI_KEYS, RATIO_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS
@@ -85,11 +85,10 @@ class LayerTable(Differing):
     k0: float | None = quantity(None, means="ratio of stresses", ge=0.0, le=5.0)
     """stress along x over that along y due to weight; absent: static.k0, which it needs"""
 
-    @model_validator(mode="after")
-    def _one_end(self) -> "LayerTable":
+    def mistakes(self) -> Iterator[str]:
+        """Two ends."""
         if self.thickness is not None and self.bottom is not None:
-            raise ValueError("bottom: is not allowed together with thickness; give one of them")
-        return self
+            yield "bottom: is not allowed together with thickness; give one of them"
 
 
 if TYPE_CHECKING:

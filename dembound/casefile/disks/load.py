@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator
 
 from dembound.boundaries.edge import normal_axis
 from dembound.casefile.disks.targets import with_history
@@ -80,12 +80,9 @@ class Load(Table):
         """Whether the load acts on all particles."""
         return self.position is None and self.region is None and self.pressure is None
 
-    @model_validator(mode="after")
-    def _one_action_in_one_place(self) -> "Load":
-        problems = [*self._problems_with_action(), *self._problems_with_place()]
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Not one action, or not in one place."""
+        yield from (*self._problems_with_action(), *self._problems_with_place())
 
     def _problems_with_action(self) -> list[str]:
         """Mistakes in force, acceleration and pressure."""
@@ -101,7 +98,7 @@ class Load(Table):
     def _problems_with_place(self) -> list[str]:
         """Mistakes in position, region and hole."""
         if self.pressure is not None:
-            return [*self._problems_with_hole()]
+            return self._problems_with_hole()
         if stray := [key for key in ("hole", "sides", "on") if key in self.model_fields_set]:
             return [f"{key}: is for a pressure" for key in stray]
         if self.position is not None and self.region is not None:

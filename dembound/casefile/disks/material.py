@@ -1,9 +1,9 @@
 """The ``[material]`` table."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from pydantic import create_model, model_validator
+from pydantic import create_model
 
 from dembound.casefile.disks.stiffness import (
     MODULI_KEYS,
@@ -110,40 +110,33 @@ class MaterialTable(Table):
     elastic_start: bool = quantity(True)
     """whether the faster elastic law serves until a contact opens, slips or closes or a bond yields"""
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "MaterialTable":
+    def mistakes(self) -> Iterator[str]:
+        """Keys that the law has no use for, contradict each other, or lack others."""
         law = LAWS[self.law]
-        problems = [*keys_problems(self, self.law, (*STIFFNESS_KEYS, *RATIO_KEYS, *WAVE_SPEED_KEYS, *TARGET_KEYS))]
+        yield from keys_problems(self, self.law, (*STIFFNESS_KEYS, *RATIO_KEYS, *WAVE_SPEED_KEYS, *TARGET_KEYS))
         if law.uses is not None:
-            problems += self._problems_with_dashpots() if self.has_dashpots else []
-            return self._without(problems)
-        if len(self.pair) > 0:
-            problems += problems_with_target(self)
+            yield from self._problems_with_dashpots()
+            return
+        if self.pair:
+            yield from problems_with_target(self)
         else:
-            problems += problems_with_moduli(self) if self.p_wave_speed is None else problems_with_speed(self)
-            problems += [
-                f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
-                for key in TARGET_KEYS
-                if key in self.model_fields_set
-            ]
-        problems += self._problems_with_strength()
-        if not law.has_history:
-            problems += self._problems_without_history()
-        if self.has_dashpots:
-            problems += self._problems_with_dashpots()
-        elif self.dp_on is not None:
-            problems.append("dp_on: is of dashpots of contacts, but there are none; give dp_nratio")
+            yield from problems_with_moduli(self) if self.p_wave_speed is None else problems_with_speed(self)
+            for key in self._given(TARGET_KEYS):
+                yield f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
+        yield from self._problems_with_strength()
+        for key in () if law.has_history else self._given(HISTORY_KEYS):
+            yield f"{key}: is only allowed with law = {with_history()}"
+        if self.dp_on is not None and not self.has_dashpots:
+            yield "dp_on: is of dashpots of contacts, but there are none; give dp_nratio"
+        yield from self._problems_with_dashpots()
         if self.rr_fric > 0.0:
-            problems += self._problems_with_rolling()
+            yield from self._problems_with_rolling()
         if self.quality_factor is not None:
-            problems += self._problems_with_quality()
-        return self._without(problems)
+            yield from self._problems_with_quality()
 
-    def _without(self, problems: list[str]) -> "MaterialTable":
-        """The table; raises ValueError with the problems, if there are any."""
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+    def _given(self, keys: Sequence[str]) -> list[str]:
+        """The keys that the file gives, of those asked for, in their order."""
+        return [key for key in keys if key in self.model_fields_set]
 
     def valued(self, keys: Sequence[str]) -> list[str]:
         """The keys that have a value, of those asked for, in their order."""
@@ -193,63 +186,60 @@ class MaterialTable(Table):
         """Whether dashpots of contacts also act beside intact bonds, if no layer's bonds have a strength."""
         return self.dp_on == "all" or (self.dp_on is None and not self.valued(STRENGTH_KEYS))
 
-    def _problems_with_dashpots(self) -> list[str]:
+    @property
+    def _asks_for_elastic_start(self) -> bool:
+        """Whether the file says that the elastic law is to serve first."""
+        return self.elastic_start and "elastic_start" in self.model_fields_set
+
+    @property
+    def _no_contacts(self) -> str:
+        """The key that leaves contacts no stiffness, with its value; empty with a stiffness."""
+        return "emod = 0" if self.emod == 0.0 else "contact_share = 0" if self.contact_share == 0.0 else ""
+
+    def _problems_with_dashpots(self) -> Iterator[str]:
         """What dashpots of contacts do not go with."""
-        problems = []
         given = [key for key in DASHPOT_KEYS if getattr(self, key) > 0.0]
         at_once = self.damps_bonds or self.no_bonds is not None
-        if at_once and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append(f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out")
-        if self.emod == 0.0 or self.contact_share == 0.0:
-            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
-            problems += [f"{key}: is of contacts, but {none} leaves them no stiffness" for key in given]
+        if given and at_once and self._asks_for_elastic_start:
+            yield f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out"
+        if self._no_contacts:
+            yield from (f"{key}: is of contacts, but {self._no_contacts} leaves them no stiffness" for key in given)
         elif self.dp_sratio > 0.0 and self.fric == 0.0:
-            problems.append("dp_sratio: is of the shear of contacts, but fric = 0 leaves them none")
-        return problems
+            yield "dp_sratio: is of the shear of contacts, but fric = 0 leaves them none"
 
-    def _problems_with_rolling(self) -> list[str]:
+    def _problems_with_rolling(self) -> Iterator[str]:
         """What resistance to rolling does not go with."""
-        problems = []
         if self.fric == 0.0:
-            problems.append(f"{ROLLING_KEY}: is of contacts with a shear stiffness, but fric = 0 leaves them none")
-        if self.emod == 0.0 or self.contact_share == 0.0:
-            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
-            problems.append(f"{ROLLING_KEY}: is of contacts, but {none} leaves them no stiffness")
-        if self.rolls and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append(f"elastic_start: is true, but contacts resist rolling ({ROLLING_KEY}) from the start")
-        return problems
+            yield f"{ROLLING_KEY}: is of contacts with a shear stiffness, but fric = 0 leaves them none"
+        if self._no_contacts:
+            yield f"{ROLLING_KEY}: is of contacts, but {self._no_contacts} leaves them no stiffness"
+        if self.rolls and self._asks_for_elastic_start:
+            yield f"elastic_start: is true, but contacts resist rolling ({ROLLING_KEY}) from the start"
 
-    def _problems_without_history(self) -> list[str]:
-        """Keys that have no effect unless the law depends on history."""
-        given = [key for key in HISTORY_KEYS if key in self.model_fields_set]
-        return [f"{key}: is only allowed with law = {with_history()}" for key in given]
-
-    def _problems_with_quality(self) -> list[str]:
+    def _problems_with_quality(self) -> Iterator[str]:
         """What damping by a quality factor does not go with."""
-        problems, law = [], LAWS[self.law]
+        law = LAWS[self.law]
         if law.has_history and not law.relaxes:
-            problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
+            yield f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"'
         if law.has_history and (none := self.no_bonds):
-            problems.append(f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none')
-        if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append("elastic_start: is true, but quality_factor damps bonds from the start; leave it out")
+            yield f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none'
+        if law.has_history and self._asks_for_elastic_start:
+            yield "elastic_start: is true, but quality_factor damps bonds from the start; leave it out"
         if self.damp > 0.0:
-            problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
-        return problems
+            yield "quality_factor: is not allowed together with damp, local damping; leave damp out"
 
-    def _problems_with_strength(self) -> list[str]:
+    def _problems_with_strength(self) -> Iterator[str]:
         """Mistakes in the strength of the bonds."""
-        problems = []
         if "pb_fa" in self.model_fields_set and self.pb_coh is None:
-            problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+            yield "pb_fa: is only allowed together with pb_coh, the strength it adds to"
         if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
-            problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
+            yield "pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh"
         if "pb_mcf" in self.model_fields_set and self.pb_ten is None:
-            problems.append("pb_mcf: is of the stress that pb_ten limits; give pb_ten")
+            yield "pb_mcf: is of the stress that pb_ten limits; give pb_ten"
         if none := self.no_bonds:
-            strengths = self.valued(STRENGTH_KEYS)
-            problems += [f"{key}: is the strength of bonds, but {none} leaves none" for key in strengths]
-        return problems
+            yield from (
+                f"{key}: is the strength of bonds, but {none} leaves none" for key in self.valued(STRENGTH_KEYS)
+            )
 
     @property
     def no_bonds(self) -> str | None:

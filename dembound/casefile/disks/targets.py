@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
-from pydantic import model_validator
-
 from dembound.casefile.types import LAWS
 from dembound.table import LARGEST_WHOLE, Table, quantity
 
@@ -34,16 +32,14 @@ class Scatter(Table):
         width = {"normal": "± {:g}", "weibull": "modulus {:g}"}[self.type].format(getattr(self, KEY_OF[self.type]))
         return f"{self.type} {width}"
 
-    @model_validator(mode="after")
-    def _one_width(self) -> "Scatter":
+    def mistakes(self) -> Iterator[str]:
+        """A width that is missing, or is that of the other distribution."""
         needed = KEY_OF[self.type]
-        problems = [] if getattr(self, needed) is not None else [f'{needed}: is missing; type = "{self.type}" needs it']
+        if getattr(self, needed) is None:
+            yield f'{needed}: is missing; type = "{self.type}" needs it'
         for key in KEY_OF.values():
             if key != needed and getattr(self, key) is not None:
-                problems.append(f'{key}: is not allowed with type = "{self.type}"; give {needed}')
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+                yield f'{key}: is not allowed with type = "{self.type}"; give {needed}'
 
 
 PAIRS = (("young", "poisson"), ("bulk", "shear"), ("p_wave_speed", "s_wave_speed"))

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any, Literal
 
-from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic import PrivateAttr
 
 from dembound.casefile.disks.surface import points_in_file
 from dembound.casefile.disks.targets import with_history
@@ -63,21 +63,14 @@ class Wall(Table):
     _line: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")
 
-    @model_validator(mode="after")
-    def _is_a_line(self, info: ValidationInfo) -> "Wall":
+    def model_post_init(self, context: Mapping[str, Any] | None) -> None:
+        """Reads its points, if they are in a file."""
         if isinstance(self.points, str):
-            try:
-                self._line, self._text = points_in_file(self.points, info.context or {})
-            except ValueError as error:
-                raise ValueError(str(error).replace("surface:", "points:", 1)) from None
+            self._line, self._text = points_in_file(self.points, context or {}, "points")
         else:
             self._line = self.points
-        problems = list(self._problems())
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
 
-    def _problems(self) -> Iterator[str]:
+    def mistakes(self) -> Iterator[str]:
         """Mistakes in the points and the motion."""
         if not 2 <= len(self._line) <= MOST_POINTS:
             yield f"points: has {counted(len(self._line), 'point')}, must have 2 to {MOST_POINTS:,}"
