@@ -96,23 +96,31 @@ class Springs(Boundary):
         return distances
 
 
-class Viscoelastic(Dashpots, Springs):
+class HoldingDashpots(Dashpots, Springs):
+    """A side with dashpots and springs."""
+
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """One dashpot and one spring per edge particle and direction, with the forces that introduce a wave."""
+        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
+        for component, name in enumerate(self.waves_by_axis(edge.axis)):
+            damping, stiffness = dampings[component], stiffnesses[component]
+            incident = waves[name].velocity if name else None
+            supports.add(edge.nodes, component, damping=damping, stiffness=stiffness, incident=incident)
+            if name:
+                supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
+
+
+class Viscoelastic(HoldingDashpots):
     """Absorbs and holds: F = −βρcD·v − K·D·u, K = α_n G/L along the normal and α_s G/L across it (Z eq. 17)."""
 
     type: Literal["viscoelastic"]
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """One dashpot and one spring per edge particle and direction."""
-        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
-        for component in range(2):
-            supports.add(edge.nodes, component, damping=dampings[component], stiffness=stiffnesses[component])
 
     def dashpots_alone(self) -> Viscous:
         """The side without its springs."""
         return Viscous(type="viscous", **self.own_keys(Dashpots))
 
 
-class ViscoelasticInput(Dashpots, Springs, Driven):
+class ViscoelasticInput(HoldingDashpots, Driven):
     """Absorbs, holds and transmits an incident wave: F = −βρcD·v − K·D·u + 2βρcD·v_i + K·D·u_i (Z eq. 18).
 
     v_i and u_i are velocity and displacement of the incident wave.
@@ -129,21 +137,6 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
                 f"boundary.{side}.source: makes springs differ along the side, and those of the column at "
                 f"boundary.{beside[0]} differ from them; give distance"
             )
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Dashpots and springs, plus the forces that introduce the incident wave."""
-        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
-        for component, name in enumerate(self.waves_by_axis(edge.axis)):
-            damping, stiffness = dampings[component], stiffnesses[component]
-            supports.add(
-                edge.nodes,
-                component,
-                damping=damping,
-                stiffness=stiffness,
-                incident=waves[name].velocity if name else None,
-            )
-            if name:
-                supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
 
     def dashpots_alone(self) -> ViscousInput:
         """The side without its springs."""

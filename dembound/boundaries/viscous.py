@@ -151,6 +151,12 @@ class BearingDashpots(Dashpots):
         """The side without springs."""
         return self.model_copy(update={"bearing": False}) if self.bearing not in (None, False) else self
 
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """One dashpot per edge particle and direction, with the force that introduces a wave if one enters."""
+        names = self.waves_by_axis(edge.axis)
+        for component, (damping, name) in enumerate(zip(self.dampings(edge, medium), names, strict=True)):
+            supports.add(edge.nodes, component, damping=damping, incident=waves[name].velocity if name else None)
+
 
 class Viscous(BearingDashpots):
     """Absorbs by dashpots: F = −βρcD·v (Z eq. 4), D the diameter of a particle; of a bar F = −βρcA·v."""
@@ -158,11 +164,6 @@ class Viscous(BearingDashpots):
     for_bars: ClassVar[bool] = True
 
     type: Literal["viscous"]
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """One dashpot per edge particle and direction."""
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            supports.add(edge.nodes, component, damping=damping)
 
 
 class ViscousInput(BearingDashpots, Driven):
@@ -175,10 +176,3 @@ class ViscousInput(BearingDashpots, Driven):
     def at_rest(self) -> Boundary:
         """A viscous side with the same dashpots and without a wave."""
         return Viscous(type="viscous", **self.own_keys(BearingDashpots))
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """The absorbing dashpots, plus the force that introduces the incident wave."""
-        names = self.waves_by_axis(edge.axis)
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            name = names[component]
-            supports.add(edge.nodes, component, damping=damping, incident=waves[name].velocity if name else None)
