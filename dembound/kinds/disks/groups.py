@@ -45,7 +45,7 @@ def group_warnings(scene: DiskScene) -> Iterator[str]:
         if own and reached:
             yield (
                 f"group.{group.name}.{own[0]}: reaches {' and '.join(reached)}, beyond which the free-field column "
-                "slides by the friction of the ground without groups; let it end before, or give a [[layer]] its friction"
+                "slides by the friction of ground without groups; let it end before, or give a [[layer]] its friction"
             )
 
 
