@@ -68,14 +68,15 @@ class Table(BaseModel):
     @classmethod
     def help_of(cls, name: str) -> str:
         """What a field means: the text below it in its class, or else as given by `quantity`; may be empty."""
-        texts = (_texts_below_fields(each.__module__).get(each.__name__, {}).get(name) for each in cls.__mro__)
+        tables = (each for each in cls.__mro__ if issubclass(each, Table))
+        texts = (_texts_below_fields(each.__module__).get(each.__name__, {}).get(name) for each in tables)
         return next(filter(None, texts), cls.model_fields[name].description or "")
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """The JSON schema, with the meaning of every key."""
         reference = super().__get_pydantic_json_schema__(core_schema, handler)
-        keys = handler.resolve_ref_schema(reference)["properties"]
+        keys = handler.resolve_ref_schema(reference).get("properties", {})
         for name in cls.model_fields:
             if said := cls.help_of(name):
                 keys[cls.key_of(name)]["description"] = said
@@ -92,7 +93,7 @@ def _texts_below_fields(module: str) -> dict[str, dict[str, str]]:
     """The texts below the fields of a module's classes, by class and field; none without the source."""
     try:
         classes = ast.parse(inspect.getsource(sys.modules[module])).body
-    except (OSError, TypeError):  # as of classes that are made in a console
+    except (KeyError, OSError, TypeError):  # as of classes that are made in a console
         return {}
     found: dict[str, dict[str, str]] = {}
     for each in (each for each in classes if isinstance(each, ast.ClassDef)):

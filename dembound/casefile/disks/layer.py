@@ -30,7 +30,8 @@ class Differing(Table):
     @classmethod
     def help_of(cls, name: str) -> str:
         """What a field means, of a key of [material] as there."""
-        return super().help_of(name) or Material.help_of(name).split("; absent")[0]
+        own = super().help_of(name)
+        return own or (Material.help_of(name).split("; absent")[0] if name in Material.model_fields else "")
 
     @property
     def own(self) -> dict[str, Any]:
