@@ -280,12 +280,7 @@ def laboratory_test(
 
 
 def calibrate(
-    case: Case,
-    side: str,
-    *,
-    motion: Motion | None = None,
-    report: calibration.Report | None = None,
-    **options: Any,
+    case: Case, side: str, *, motion: Motion | None = None, report: calibration.Report | None = None, **options: Any
 ) -> tuple[Case, Calibration]:
     """Find the factor β of one side for P or S waves; returns the case with this β, and the record of the calibration.
 

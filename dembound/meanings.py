@@ -159,24 +159,16 @@ MEANINGS: dict[str, Meaning] = {
         spared=frozenset({0.25, 0.5, 1.0, 1.5}),
     ),
     "size of a particle": Meaning(
-        "from silt to a block of 20 m",
-        *(1e-6, 20.0, "particles have", (1e-4, 10.0)),
-        slips=_LENGTHS,
+        "from silt to a block of 20 m", *(1e-6, 20.0, "particles have", (1e-4, 10.0)), slips=_LENGTHS
     ),
-    "thickness": Meaning(
-        "from a fibre to a pile",
-        *(1e-5, 5.0, "bars have", (1e-4, 1.0)),
-        slips=_LENGTHS,
-    ),
+    "thickness": Meaning("from a fibre to a pile", *(1e-5, 5.0, "bars have", (1e-4, 1.0)), slips=_LENGTHS),
     "gap": Meaning(
         "bars that are to touch within a run are closer",
         *(1e-9, 0.1, "gaps of bars have", (1e-7, 0.02)),
         slips=(_times(1e-3, "mm"), _times(1e-6, "µm")),
     ),
     "length": Meaning(
-        "from a laboratory specimen to a basin",
-        *(1e-6, 1e5, "scenes have", (1e-3, 1e4)),
-        slips=(_times(1e-3, "mm"),),
+        "from a laboratory specimen to a basin", *(1e-6, 1e5, "scenes have", (1e-3, 1e4)), slips=(_times(1e-3, "mm"),)
     ),
     "cross-section": Meaning(
         "from a wire of 10 µm to a pier",
@@ -184,9 +176,7 @@ MEANINGS: dict[str, Meaning] = {
         slips=(_times(1e-6, "mm²"), _times(1e-4, "cm²")),
     ),
     "frequency": Meaning(
-        "from tides to ultrasound",
-        *(1e-6, 1e10, "waves have", (0.01, 1e8)),
-        slips=(_times(1e-3, "mHz"),),
+        "from tides to ultrasound", *(1e-6, 1e10, "waves have", (0.01, 1e8)), slips=(_times(1e-3, "mHz"),)
     ),
     "period": Meaning("from ultrasound to tides", 1e-10, 1e6, "waves have"),
     "duration": Meaning("from a crack in glass to a day", 1e-10, 1e6, "runs and waves have"),
@@ -202,13 +192,10 @@ MEANINGS: dict[str, Meaning] = {
     ),
     "strain rate": Meaning("from creep to a shock", 1e-12, 1e8, "solids have"),
     "attenuation": Meaning(
-        "a wave is gone within a millimetre above, and not weakened within the earth below",
-        *(1e-8, 1e3, "solids have"),
+        "a wave is gone within a millimetre above, and not weakened within the earth below", *(1e-8, 1e3, "solids have")
     ),
     "acceleration": Meaning(
-        "gravity on an asteroid to a blow",
-        *(1e-4, 1e7, "bodies have", (1.0, 1e3)),
-        slips=(_times(1e-3, "mm/s²"),),
+        "gravity on an asteroid to a blow", *(1e-4, 1e7, "bodies have", (1.0, 1e3)), slips=(_times(1e-3, "mm/s²"),)
     ),
     "normal over shear stiffness": Meaning(
         "1 to 4 gives Poisson's ratios of rocks; below 1 contacts are softer along their normal than across it",
@@ -216,9 +203,7 @@ MEANINGS: dict[str, Meaning] = {
         slips=(Slip("shear over normal stiffness", lambda value: 1.0 / value),),
     ),
     "bond radius": Meaning(
-        "bonds as wide as the smaller disk have 1",
-        *(0.02, 3.0, "bonds have", (0.05, 2.0)),
-        slips=(_times(1e-2, "%"),),
+        "bonds as wide as the smaller disk have 1", *(0.02, 3.0, "bonds have", (0.05, 2.0)), slips=(_times(1e-2, "%"),)
     ),
     "rest": Meaning(
         "above, forces out of balance still move the body when the stage is over",

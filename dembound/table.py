@@ -1,14 +1,19 @@
 """The base of every table of a case file: frozen, and without unknown keys; and the kinds of values they share."""
 
+import ast
+import inspect
 import math
 import re
+import sys
 import warnings
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 from importlib.metadata import entry_points
-from typing import Annotated, Any, TypeVar, Union, get_args
+from itertools import pairwise
+from typing import Annotated, Any, Self, TypeVar, Union, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic.annotated_handlers import GetJsonSchemaHandler
 
 from dembound.errors import CONTROL, UnusableTypeWarning, visible
 from dembound.meanings import MEANINGS, OF_UNITS
@@ -32,6 +37,16 @@ class Table(BaseModel):
     def _usable(cls, value: Any) -> Any:
         return usable(value)
 
+    def mistakes(self) -> Iterator[str]:
+        """What is wrong with keys that are valid each by itself, a line ``key: what`` each; by default nothing."""
+        yield from ()
+
+    @model_validator(mode="after")
+    def _has_no_mistakes(self) -> Self:
+        if found := dict.fromkeys(self.mistakes()):
+            raise ValueError("\n".join(found))
+        return self
+
     def given(self) -> dict[str, Any]:
         """The keys that have been given, in TOML's types; the key that distinguishes tables is always included."""
         fixed = {name for name in DISCRIMINATORS if len(get_args(self._annotation(name))) == 1}  # else it is a choice
@@ -51,9 +66,42 @@ class Table(BaseModel):
         return extra if isinstance(extra, Mapping) else {}
 
     @classmethod
+    def help_of(cls, name: str) -> str:
+        """What a field means: the text below it in its class, or else as given by `quantity`; may be empty."""
+        tables = (each for each in cls.__mro__ if issubclass(each, Table))
+        texts = (_texts_below_fields(each.__module__).get(each.__name__, {}).get(name) for each in tables)
+        return next(filter(None, texts), cls.model_fields[name].description or "")
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """The JSON schema, with the meaning of every key."""
+        reference = super().__get_pydantic_json_schema__(core_schema, handler)
+        keys = handler.resolve_ref_schema(reference).get("properties", {})
+        for name in cls.model_fields:
+            if said := cls.help_of(name):
+                keys[cls.key_of(name)]["description"] = said
+        return reference
+
+    @classmethod
     def key_of(cls, name: str) -> str:
         """The key of a field; another name only where the key is a word of Python, as "from"."""
         return cls.model_fields[name].alias or name
+
+
+@cache
+def _texts_below_fields(module: str) -> dict[str, dict[str, str]]:
+    """The texts below the fields of a module's classes, by class and field; none without the source."""
+    try:
+        classes = ast.parse(inspect.getsource(sys.modules[module])).body
+    except (KeyError, OSError, TypeError):  # as of classes that are made in a console
+        return {}
+    found: dict[str, dict[str, str]] = {}
+    for each in (each for each in classes if isinstance(each, ast.ClassDef)):
+        for field, below in pairwise(each.body):
+            match field, below:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    found.setdefault(each.name, {})[name] = " ".join(text.split())
+    return found
 
 
 def usable(value: T) -> T:
@@ -104,13 +152,15 @@ def every_key(value: Any) -> Any:
     return [every_key(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
-def quantity(default: Any = ..., *, help: str, unit: str = "1", means: str | None = None, **limits: Any) -> Any:
+def quantity(
+    default: Any = ..., *, help: str | None = None, unit: str = "1", means: str | None = None, **limits: Any
+) -> Any:
     """A physical field, with the unit and meaning that docs and error texts print.
 
     Parameters
     ----------
     default : the value when the key is absent; ``...`` makes the key required.
-    help : one sentence with the meaning of the key.
+    help : one sentence with the meaning of the key, unless it stands below the key in its class.
     unit : SI unit, "1" for a pure number.
     means : meaning of a number in `MEANINGS`, with its likely sizes; absent: the only meaning of its unit.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from pydantic import model_validator
 
 from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion, axis_of_motion
 from dembound.boundaries.support import SupportBuilder, Waves
@@ -233,8 +232,10 @@ class Drivable(Boundary):
     Positive velocities point along +x and +y on every side. Both waves may be given together.
     """
 
-    wave_p: str | None = quantity(None, help="name of the wave that moves along the side's normal")
-    wave_s: str | None = quantity(None, help="name of the wave that moves across the side's normal")
+    wave_p: str | None = quantity(None)
+    """name of the wave that moves along the side's normal"""
+    wave_s: str | None = quantity(None)
+    """name of the wave that moves across the side's normal"""
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Waves along a direction in which nothing can move."""
@@ -254,8 +255,8 @@ class Drivable(Boundary):
 class Driven(Drivable):
     """A side that needs at least one wave."""
 
-    @model_validator(mode="after")
-    def _names_a_wave(self) -> "Driven":
-        if self.wave_p is None and self.wave_s is None:
-            raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """No wave."""
+        yield from super().mistakes()
+        if not self.waves:
+            yield "names no wave; give wave_p (along the normal), wave_s (across it) or both"

@@ -15,7 +15,8 @@ class Free(Boundary):
 
     type: Literal["free"] = "free"
 
-    artificial: bool = quantity(False, help="ground or rock goes on beyond the side")
+    artificial: bool = quantity(False)
+    """ground or rock goes on beyond the side"""
 
     @property
     def is_artificial(self) -> bool:

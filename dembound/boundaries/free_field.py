@@ -8,8 +8,6 @@ Dashpots on the velocity relative to the twin absorb the waves from the body.
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
-from pydantic import model_validator
-
 from dembound.boundaries.edge import normal_axis
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import BearingDashpots, Viscous
@@ -27,13 +25,13 @@ class FreeField(BearingDashpots):
 
     type: Literal["free_field"]
 
-    @model_validator(mode="after")
-    def _whole_masses(self) -> "FreeField":
+    def mistakes(self) -> Iterator[str]:
+        """What a side with a column cannot have."""
+        yield from super().mistakes()
         if self.half_mass:
-            raise ValueError("half_mass: is not allowed on a free-field side, whose other half is in the column")
+            yield "half_mass: is not allowed on a free-field side, whose other half is in the column"
         if self.rock is not None:
-            raise ValueError("rock: is not allowed on a free-field side, whose column is of the same ground")
-        return self
+            yield "rock: is not allowed on a free-field side, whose column is of the same ground"
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """A side that cannot have a column."""

@@ -21,19 +21,12 @@ class MatchedLayer(Drivable):
     for_bars: ClassVar[bool] = True
 
     type: Literal["matched_layer"]
-    nodes: int = quantity(
-        40, means="count", help="number N of nodes beyond the end, at least twice the horizon", ge=4, le=10_000
-    )
-    power: float = quantity(
-        3.0, means="setting", help="power p with which the rate of decay rises with the depth", ge=1.0, le=10.0
-    )
-    reflection: float | None = quantity(
-        None,
-        means="share",
-        help="R0, theoretical reflection of the outer end; absent: 10^−(4 + N/20), at least 1e-12",
-        gt=0.0,
-        lt=1.0,
-    )
+    nodes: int = quantity(40, means="count", ge=4, le=10_000)
+    """number N of nodes beyond the end, at least twice the horizon"""
+    power: float = quantity(3.0, means="setting", ge=1.0, le=10.0)
+    """power p with which the rate of decay rises with the depth"""
+    reflection: float | None = quantity(None, means="share", gt=0.0, lt=1.0)
+    """R0, theoretical reflection of the outer end; absent: 10^−(4 + N/20), at least 1e-12"""
 
     @property
     def is_artificial(self) -> bool:

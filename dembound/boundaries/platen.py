@@ -4,12 +4,13 @@ In such a zone beside a side forces at rest always have ground to act on.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
-from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
+from dembound.boundaries.boundary import Boundary, Driven
+from dembound.boundaries.edge import Motion, axis_of_motion, normal_axis
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.places import is_in_range
 from dembound.table import Box, quantity
 
@@ -42,22 +43,15 @@ class Keeping(Boundary):
 class Holding(Keeping):
     """A side that prescribes motion, of all its particles or, as a platen or jaw, of those `within` a range."""
 
-    within: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="range [x0, x1] of a bottom or top, [y0, y1] of a left "
-        "or right side in which it holds particles, others are free; absent: all",
-    )
+    within: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """range [x0, x1] of a bottom or top, [y0, y1] of a left or right side in which it holds particles, others are free;
+    absent: all"""
 
-    reactions: Literal["kept", "none"] = quantity(
-        "kept",
-        help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
-    )
+    reactions: Literal["kept", "none"] = quantity("kept")
+    """of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away"""
 
-    until: float | None = quantity(
-        None, unit="s", help="of a static side: time of the run at which kept reactions end; absent: never", ge=0.0
-    )
+    until: float | None = quantity(None, unit="s", ge=0.0)
+    """of a static side: time of the run at which kept reactions end; absent: never"""
 
     @field_validator("within")
     @classmethod
@@ -74,11 +68,11 @@ class Holding(Keeping):
                 yield f"boundary.{side}.{key}: is of the static stage; give it to static.boundary.{side}"
         yield from beside_disks(f"boundary.{side}", side, self, tables)
 
-    @model_validator(mode="after")
-    def _ends_once(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """An end of reactions that there are not."""
+        yield from super().mistakes()
         if self.until is not None and self.reactions == "none":
-            raise ValueError('until: is of reactions that are "kept"')
-        return self
+            yield 'until: is of reactions that are "kept"'
 
     def on_whole_side(self) -> Self:
         """The side with all its particles held."""
@@ -96,7 +90,8 @@ class Holding(Keeping):
 class Wall(Holding):
     """A side that holds its particles at rest, beyond which ground or rock goes on or not."""
 
-    artificial: bool = quantity(True, help="ground or rock goes on beyond the side")
+    artificial: bool = quantity(True)
+    """ground or rock goes on beyond the side"""
 
     @property
     def is_artificial(self) -> bool:
@@ -130,3 +125,96 @@ def driven_components(boundary: Mapping[str, Boundary | None]) -> Iterator[tuple
         for motion in table.waves if table else ():
             if table and (axis := axis_of_motion(side, motion)) in table.prescribed(normal_axis(side)):
                 yield side, axis
+
+
+class Fixed(Wall):
+    """A rigid wall: its particles neither move nor turn; reflected velocities have the opposite sign."""
+
+    for_bars: ClassVar[bool] = True
+    for_static: ClassVar[bool] = True
+
+    type: Literal["fixed"]
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """All three components."""
+        return (0, 1, 2)
+
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """Prescribe zero velocity."""
+        for component in range(3):
+            supports.add(self.part_of(edge).nodes, component, prescribed=True)
+
+
+class Roller(Wall):
+    """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
+
+    for_static: ClassVar[bool] = True
+
+    type: Literal["roller"]
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """The motion along the normal."""
+        return (normal_axis,)
+
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """Prescribe zero velocity along the normal."""
+        supports.add(self.part_of(edge).nodes, edge.axis, prescribed=True)
+
+
+Component = Literal["normal", "shear"]
+"""Component of the motion of a side: along its normal, or across it."""
+
+MOTIONS: Mapping[Component, Motion] = {"normal": "p", "shear": "s"}
+"""Component -> the waves that move the side along it."""
+
+
+class Velocity(Holding, Driven):
+    """A rigid platen that moves with the given waves.
+
+    A held component without a wave does not move; one that is not held is free, and so is rotation: by default a grip,
+    with "normal" alone a smooth platen.
+    """
+
+    for_bars: ClassVar[bool] = True
+
+    type: Literal["velocity"]
+
+    hold: tuple[Component, ...] = quantity(("normal", "shear"), min_length=1)
+    """components of motion that it prescribes; others are free"""
+
+    def mistakes(self) -> Iterator[str]:
+        """Waves of components that it does not hold."""
+        yield from super().mistakes()
+        for part, motion in MOTIONS.items():
+            if part not in self.hold and motion in self.waves:
+                yield f"wave_{motion}: moves a component that hold does not name; add it there"
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Components of an end of a bar."""
+        yield from super().problems(side, tables)
+        if "bar" in tables and "hold" in self.model_fields_set:
+            yield f"boundary.{side}.hold: is for sides of disks; a bar moves only along its axis"
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """The axes of the components that it holds."""
+        axes = {"normal": normal_axis, "shear": 1 - normal_axis}
+        return tuple(sorted({axes[component] for component in self.hold}))
+
+    def at_rest(self) -> Boundary:
+        """A rigid wall, or a smooth one."""
+        if set(self.hold) == set(MOTIONS):
+            return Fixed(type="fixed", within=self.within)
+        return Roller(type="roller", within=self.within) if "normal" in self.hold else super().at_rest()
+
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """Prescribe v = wave(t) along each named direction and v = 0 along others that are held."""
+        nodes, held = self.part_of(edge).nodes, self.prescribed(edge.axis)
+        for component, name in enumerate(self.waves_by_axis(edge.axis)):
+            if component in held:
+                supports.add(
+                    nodes,
+                    component,
+                    drive=1.0 if name else 0.0,
+                    signal=waves[name].velocity if name else None,
+                    prescribed=True,
+                )

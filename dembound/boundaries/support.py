@@ -142,17 +142,7 @@ class Supports:
         return values
 
 
-__all__ = [
-    "BoundaryMedium",
-    "Edge",
-    "Incident",
-    "Shares",
-    "Signal",
-    "Signals",
-    "SupportBuilder",
-    "Supports",
-    "Waves",
-]
+__all__ = ["BoundaryMedium", "Edge", "Incident", "Shares", "Signal", "Signals", "SupportBuilder", "Supports", "Waves"]
 
 
 KINDS: Mapping[str, type[np.generic]] = {

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import model_validator
 
 from dembound.boundaries.boundary import Boundary, Driven, Place
 from dembound.boundaries.edge import normal_axis, plane_of
@@ -24,43 +23,26 @@ class Springs(Boundary):
 
     beyond_dashpots: ClassVar[str] = "viscoelastic sides without their springs"
 
-    alpha_n: float = quantity(
-        1.0, means="factor of springs", help="factor α_n of the springs along the side's normal", ge=0.0
-    )
-    alpha_s: float = quantity(
-        0.5, means="factor of springs", help="factor α_s of the springs across the side's normal", ge=0.0
-    )
-    young_modulus: float | None = quantity(
-        None,
-        unit="Pa",
-        means="modulus",
-        help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium, or of rock",
-        gt=0.0,
-    )
-    poisson_ratio: float | None = quantity(
-        None,
-        means="Poisson's ratio",
-        help="ν of the springs' G; absent: 0 where young_modulus is given",
-        gt=-1.0,
-        le=0.5,
-    )
-    distance: float | None = quantity(
-        None, unit="m", means="length", help="distance L from the source of the waves; give this or source", gt=0.0
-    )
-    source: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="place [x, y] the waves come from; L is each particle's own distance from there",
-    )
+    alpha_n: float = quantity(1.0, means="factor of springs", ge=0.0)
+    """factor α_n of the springs along the side's normal"""
+    alpha_s: float = quantity(0.5, means="factor of springs", ge=0.0)
+    """factor α_s of the springs across the side's normal"""
+    young_modulus: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium, or of rock"""
+    poisson_ratio: float | None = quantity(None, means="Poisson's ratio", gt=-1.0, le=0.5)
+    """ν of the springs' G; absent: 0 where young_modulus is given"""
+    distance: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """distance L from the source of the waves; give this or source"""
+    source: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """place [x, y] the waves come from; L is each particle's own distance from there"""
 
-    @model_validator(mode="after")
-    def _fit_together(self) -> "Springs":
+    def mistakes(self) -> Iterator[str]:
+        """A modulus or a distance that is not known."""
+        yield from super().mistakes()
         if self.poisson_ratio is not None and self.young_modulus is None:
-            raise ValueError("poisson_ratio: needs young_modulus; without it G is that of the medium")
+            yield "poisson_ratio: needs young_modulus; without it G is that of the medium"
         if (self.distance is None) == (self.source is None):
-            raise ValueError("must have exactly one of distance and source, which give the distance L")
-        return self
+            yield "must have exactly one of distance and source, which give the distance L"
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """Adds the factors α, the modulus G (Pa) and the distances L (m) of the springs."""
@@ -114,23 +96,31 @@ class Springs(Boundary):
         return distances
 
 
-class Viscoelastic(Dashpots, Springs):
+class HoldingDashpots(Dashpots, Springs):
+    """A side with dashpots and springs."""
+
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """One dashpot and one spring per edge particle and direction, with the forces that introduce a wave."""
+        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
+        for component, name in enumerate(self.waves_by_axis(edge.axis)):
+            damping, stiffness = dampings[component], stiffnesses[component]
+            incident = waves[name].velocity if name else None
+            supports.add(edge.nodes, component, damping=damping, stiffness=stiffness, incident=incident)
+            if name:
+                supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
+
+
+class Viscoelastic(HoldingDashpots):
     """Absorbs and holds: F = −βρcD·v − K·D·u, K = α_n G/L along the normal and α_s G/L across it (Z eq. 17)."""
 
     type: Literal["viscoelastic"]
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """One dashpot and one spring per edge particle and direction."""
-        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
-        for component in range(2):
-            supports.add(edge.nodes, component, damping=dampings[component], stiffness=stiffnesses[component])
 
     def dashpots_alone(self) -> Viscous:
         """The side without its springs."""
         return Viscous(type="viscous", **self.own_keys(Dashpots))
 
 
-class ViscoelasticInput(Dashpots, Springs, Driven):
+class ViscoelasticInput(HoldingDashpots, Driven):
     """Absorbs, holds and transmits an incident wave: F = −βρcD·v − K·D·u + 2βρcD·v_i + K·D·u_i (Z eq. 18).
 
     v_i and u_i are velocity and displacement of the incident wave.
@@ -147,21 +137,6 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
                 f"boundary.{side}.source: makes springs differ along the side, and those of the column at "
                 f"boundary.{beside[0]} differ from them; give distance"
             )
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Dashpots and springs, plus the forces that introduce the incident wave."""
-        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
-        for component, name in enumerate(self.waves_by_axis(edge.axis)):
-            damping, stiffness = dampings[component], stiffnesses[component]
-            supports.add(
-                edge.nodes,
-                component,
-                damping=damping,
-                stiffness=stiffness,
-                incident=waves[name].velocity if name else None,
-            )
-            if name:
-                supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
 
     def dashpots_alone(self) -> ViscousInput:
         """The side without its springs."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dembound.boundaries.boundary import Boundary, Driven
 from dembound.boundaries.edge import BoundaryMedium, Edge, Factor, Motion
@@ -16,15 +16,17 @@ from dembound.table import Table, quantity
 class Rock(Table):
     """The rock of a half-space, whose dashpots ρ_r c_r replace those of the ground; right at normal incidence."""
 
-    density: float = quantity(..., unit="kg/m³", help="density ρ of the rock", gt=0.0)
-    p_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its P waves", gt=0.0)
-    s_wave_speed: float = quantity(..., unit="m/s", means="wave speed", help="speed of its S waves", gt=0.0)
+    density: float = quantity(unit="kg/m³", gt=0.0)
+    """density ρ of the rock"""
+    p_wave_speed: float = quantity(unit="m/s", means="wave speed", gt=0.0)
+    """speed of its P waves"""
+    s_wave_speed: float = quantity(unit="m/s", means="wave speed", gt=0.0)
+    """speed of its S waves"""
 
-    @model_validator(mode="after")
-    def _is_stable(self) -> "Rock":
+    def mistakes(self) -> Iterator[str]:
+        """Speeds of no solid."""
         if not self.s_wave_speed < self.p_wave_speed:
-            raise ValueError("s_wave_speed: must be below p_wave_speed, as in every elastic solid")
-        return self
+            yield "s_wave_speed: must be below p_wave_speed, as in every elastic solid"
 
     def factors(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
         """β = ρ_r c_r/(ρc)·H/ΣD of an edge, with ρ and c of the medium; 1 where it has no such waves."""
@@ -48,27 +50,20 @@ class Dashpots(Keeping):
 
     may_halve: ClassVar[bool] = True
 
-    beta_p: Given = quantity(
-        "matched",
-        means="factor of dashpots",
-        help='factor β of the dashpots along the side\'s normal; "matched": that of the impedance of the packing',
-    )
-    beta_s: Given = quantity(
-        "matched",
-        means="factor of dashpots",
-        help="factor β of the dashpots across the side's normal",
-    )
-    rock: Rock | None = quantity(
-        None, help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"
-    )
-    half_mass: bool = quantity(False, help="the particles are half cells; sides of disks in one row, not free_field")
+    beta_p: Given = quantity("matched", means="factor of dashpots")
+    """factor β of the dashpots along the side's normal; "matched": that of the impedance of the packing"""
+    beta_s: Given = quantity("matched", means="factor of dashpots")
+    """factor β of the dashpots across the side's normal"""
+    rock: Rock | None = quantity(None)
+    """rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"""
+    half_mass: bool = quantity(False)
+    """the particles are half cells; sides of disks in one row, not free_field"""
 
-    @model_validator(mode="after")
-    def _rock_or_factors(self) -> Self:
-        given = sorted({"beta_p", "beta_s"} & self.model_fields_set)
-        if self.rock is not None and given:
-            raise ValueError(f"rock: gives the factors of both waves; leave out {' and '.join(given)}")
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Factors that are given twice."""
+        yield from super().mistakes()
+        if self.rock is not None and (given := sorted({"beta_p", "beta_s"} & self.model_fields_set)):
+            yield f"rock: gives the factors of both waves; leave out {' and '.join(given)}"
 
     @property
     def factors(self) -> Mapping[Motion, Factor]:
@@ -133,19 +128,18 @@ class Bearing(Table):
     a bottom without a column, its mean motion; L is the length of the side, G = ρc_s² of the dashpots' medium.
     """
 
-    alpha_n: float = quantity(1.0, means="factor of springs", help="factor α of the springs along the normal", ge=0.0)
-    alpha_s: float = quantity(0.5, means="factor of springs", help="factor α of the springs across the normal", ge=0.0)
+    alpha_n: float = quantity(1.0, means="factor of springs", ge=0.0)
+    """factor α of the springs along the normal"""
+    alpha_s: float = quantity(0.5, means="factor of springs", ge=0.0)
+    """factor α of the springs across the normal"""
 
 
 class BearingDashpots(Dashpots):
     """Dashpots that, at the bottom and beside a free-field column, may have springs on relative motion beside them."""
 
-    bearing: bool | Bearing | None = quantity(
-        None,
-        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
-        "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
-        "an intact zone",
-    )
+    bearing: bool | Bearing | None = quantity(None)
+    """whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which bear what
+    forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has an intact zone"""
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Springs of a side beyond which no ground is known to move."""
@@ -157,6 +151,12 @@ class BearingDashpots(Dashpots):
         """The side without springs."""
         return self.model_copy(update={"bearing": False}) if self.bearing not in (None, False) else self
 
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
+        """One dashpot per edge particle and direction, with the force that introduces a wave if one enters."""
+        names = self.waves_by_axis(edge.axis)
+        for component, (damping, name) in enumerate(zip(self.dampings(edge, medium), names, strict=True)):
+            supports.add(edge.nodes, component, damping=damping, incident=waves[name].velocity if name else None)
+
 
 class Viscous(BearingDashpots):
     """Absorbs by dashpots: F = −βρcD·v (Z eq. 4), D the diameter of a particle; of a bar F = −βρcA·v."""
@@ -164,11 +164,6 @@ class Viscous(BearingDashpots):
     for_bars: ClassVar[bool] = True
 
     type: Literal["viscous"]
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """One dashpot per edge particle and direction."""
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            supports.add(edge.nodes, component, damping=damping)
 
 
 class ViscousInput(BearingDashpots, Driven):
@@ -181,10 +176,3 @@ class ViscousInput(BearingDashpots, Driven):
     def at_rest(self) -> Boundary:
         """A viscous side with the same dashpots and without a wave."""
         return Viscous(type="viscous", **self.own_keys(BearingDashpots))
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """The absorbing dashpots, plus the force that introduces the incident wave."""
-        names = self.waves_by_axis(edge.axis)
-        for component, damping in enumerate(self.dampings(edge, medium)):
-            name = names[component]
-            supports.add(edge.nodes, component, damping=damping, incident=waves[name].velocity if name else None)

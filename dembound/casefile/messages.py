@@ -239,12 +239,7 @@ def _kind(schema: Mapping[str, Any]) -> str:
         return _one_of(schema["enum"])
     if schema.get("type") == "array":
         return _list(schema)
-    kinds = {
-        "number": "a number",
-        "integer": "a whole number",
-        "boolean": "true or false",
-        "string": "a text",
-    }
+    kinds = {"number": "a number", "integer": "a whole number", "boolean": "true or false", "string": "a text"}
     return kinds.get(schema.get("type", ""), "a table") + _limits(schema)
 
 

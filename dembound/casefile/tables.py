@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from dembound.table import Table, quantity
 
@@ -63,55 +63,29 @@ ENDING = ("until", *(key for keys in ENDING_KEYS.values() for key in keys))
 class Run(Table):
     """Simulated time and time step, and whether the run ends before it."""
 
-    duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
-    time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(
-        "auto", unit="s", help='time step; "auto" takes it from the stability limit'
-    )
-    safety: float = quantity(
-        0.9, means="share", help="share of the stability limit of an automatic step", gt=0.0, le=1.0
-    )
-    checkpoint: float = quantity(
-        300.0, unit="s", means="wall time", help="wall time between checkpoints; 0: none", ge=0.0
-    )
-    until: Literal["duration", "silent", "peak", "rest"] = quantity(
-        "duration",
-        help='when it ends: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a '
-        'wave moves have passed their peaks; "rest": of disks, what fell is at rest',
-    )
-    silent_level: float = quantity(
-        1e-3,
-        means="share",
-        help="share of its own peak so far below which a monitor's velocity is silent",
-        gt=0.0,
-        lt=1.0,
-    )
-    silent_for: float | None = quantity(
-        None,
-        unit="s",
-        help="time over which all monitors must be silent; absent: the longest wave, or echo from a side",
-        gt=0.0,
-    )
+    duration: float = quantity(unit="s", gt=0.0)
+    """simulated time"""
+    time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity("auto", unit="s")
+    """time step; "auto" takes it from the stability limit"""
+    safety: float = quantity(0.9, means="share", gt=0.0, le=1.0)
+    """share of the stability limit of an automatic step"""
+    checkpoint: float = quantity(300.0, unit="s", means="wall time", ge=0.0)
+    """wall time between checkpoints; 0: none"""
+    until: Literal["duration", "silent", "peak", "rest"] = quantity("duration")
+    """when it ends: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a wave
+    moves have passed their peaks; "rest": of disks, what fell is at rest"""
+    silent_level: float = quantity(1e-3, means="share", gt=0.0, lt=1.0)
+    """share of its own peak so far below which a monitor's velocity is silent"""
+    silent_for: float | None = quantity(None, unit="s", gt=0.0)
+    """time over which all monitors must be silent; absent: the longest wave, or echo from a side"""
 
-    peak_share: float = quantity(
-        0.7,
-        means="share",
-        help="share of its peak, from the force at the start, below which a side's force has fallen",
-        gt=0.0,
-        lt=1.0,
-    )
-    peak_for: float | None = quantity(
-        None,
-        unit="s",
-        help="time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice",
-        gt=0.0,
-    )
-    rest_for: float | None = quantity(
-        None,
-        unit="s",
-        help="time for which the kinetic energy must be below 1e-3 of that of the fall; absent: that of a free fall "
-        "from the height of the body",
-        gt=0.0,
-    )
+    peak_share: float = quantity(0.7, means="share", gt=0.0, lt=1.0)
+    """share of its peak, from the force at the start, below which a side's force has fallen"""
+    peak_for: float | None = quantity(None, unit="s", gt=0.0)
+    """time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice"""
+    rest_for: float | None = quantity(None, unit="s", gt=0.0)
+    """time for which the kinetic energy must be below 1e-3 of that of the fall; absent: that of a free fall from the
+    height of the body"""
 
     @property
     def is_test(self) -> bool:
@@ -123,17 +97,12 @@ class Run(Table):
         times = [key for key in ("silent_for", "peak_for", "rest_for") if (getattr(self, key) or 0.0) > duration]
         return self.model_copy(update={"duration": duration, **dict.fromkeys(times)})
 
-    @model_validator(mode="after")
-    def _ending_keys_have_effect(self) -> "Run":
-        stray = [
-            f'{key}: is only allowed with until = "{until}"'
-            for until, keys in ENDING_KEYS.items()
-            for key in keys
-            if self.until != until and key in self.model_fields_set
-        ]
-        if stray:
-            raise ValueError("\n".join(stray))
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Keys that belong to another end."""
+        for until, keys in ENDING_KEYS.items():
+            for key in keys:
+                if self.until != until and key in self.model_fields_set:
+                    yield f'{key}: is only allowed with until = "{until}"'
 
 
 MOST_SNAPSHOTS = 10_000
@@ -149,29 +118,28 @@ ParaView = Literal["vtu", "vtkhdf", "both", "none"]
 class Output(Table):
     """What a run records and writes."""
 
-    history_interval: float = quantity(0.0, unit="s", help="time between samples of histories; 0: every step", ge=0.0)
-    side_interval: float = quantity(
-        0.0, unit="s", help="time between samples of sides; 0: every eighth step, or a longer history_interval", ge=0.0
-    )
-    energy_interval: float = quantity(
-        0.0, unit="s", help="time between entries of the ledger; 0: a hundred over the run", ge=0.0
-    )
-    snapshots: int = quantity(
-        1,
-        means="count",
-        help="whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest",
-        ge=0,
-        le=MOST_SNAPSHOTS,
-    )
-    stress: bool = quantity(False, help="stress of every particle in snapshots")
-    contacts: bool = quantity(False, help="forces of every contact and bond in snapshots")
-    paraview: ParaView = quantity(
-        "vtu", help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none"'
-    )
-    peaks: bool = quantity(False, help="largest speed of every particle in the run")
-    load_factor: bool = quantity(False, help="find the factor of the waves up to which the elastic law holds")
-    estimate: bool = quantity(False, help="estimate the errors when the run is over")
-    pictures: bool = quantity(True, help="draw pictures when the run is over")
+    history_interval: float = quantity(0.0, unit="s", ge=0.0)
+    """time between samples of histories; 0: every step"""
+    side_interval: float = quantity(0.0, unit="s", ge=0.0)
+    """time between samples of sides; 0: every eighth step, or a longer history_interval"""
+    energy_interval: float = quantity(0.0, unit="s", ge=0.0)
+    """time between entries of the ledger; 0: a hundred over the run"""
+    snapshots: int = quantity(1, means="count", ge=0, le=MOST_SNAPSHOTS)
+    """whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest"""
+    stress: bool = quantity(False)
+    """stress of every particle in snapshots"""
+    contacts: bool = quantity(False)
+    """forces of every contact and bond in snapshots"""
+    paraview: ParaView = quantity("vtu")
+    """snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none" """
+    peaks: bool = quantity(False)
+    """largest speed of every particle in the run"""
+    load_factor: bool = quantity(False)
+    """find the factor of the waves up to which the elastic law holds"""
+    estimate: bool = quantity(False)
+    """estimate the errors when the run is over"""
+    pictures: bool = quantity(True)
+    """draw pictures when the run is over"""
 
 
 ReferenceName = Literal["exact", "extended", "finer", "finest"]
@@ -185,22 +153,25 @@ MOST_REPEATS = 1000
 class ChartChoice(Table):
     """A choice of which several keys change together."""
 
-    name: str = quantity(..., help="name of the choice in the chart", min_length=1)
-    set: dict[str, Any] = quantity(..., help='changed keys, such as { "run.safety" = 0.5 }')
+    name: str = quantity(min_length=1)
+    """name of the choice in the chart"""
+    set: dict[str, Any] = quantity()
+    """changed keys, such as { "run.safety" = 0.5 }"""
 
 
 class Chart(Table):
     """Choices that `dembound chart` compares; runs do not depend on it."""
 
-    vary: Vary = quantity({}, help='key -> list of values, or range such as "1:20"; all combinations are choices')
-    choice: tuple[ChartChoice, ...] = quantity((), help="additional choices, a table [[chart.choice]] each")
-    repeats: int = quantity(3, means="count", help="timed runs of every choice", ge=1, le=MOST_REPEATS)
-    reference: ReferenceName | None = quantity(
-        None, help="reference of the errors; absent: the first that the case allows"
-    )
-    until: End = quantity(
-        "break", help='end of the compared histories: "break", the first spall or broken bond of the reference; "end"'
-    )
+    vary: Vary = quantity({})
+    """key -> list of values, or range such as "1:20"; all combinations are choices"""
+    choice: tuple[ChartChoice, ...] = quantity(())
+    """additional choices, a table [[chart.choice]] each"""
+    repeats: int = quantity(3, means="count", ge=1, le=MOST_REPEATS)
+    """timed runs of every choice"""
+    reference: ReferenceName | None = quantity(None)
+    """reference of the errors; absent: the first that the case allows"""
+    until: End = quantity("break")
+    """end of the compared histories: "break", the first spall or broken bond of the reference; "end" """
 
 
 Action = Literal["run", "calibrate"]
@@ -214,12 +185,13 @@ MOST_PROCESSES = 10_000
 class Sweep(Table):
     """Members of `dembound sweep`, whose options override it; runs do not depend on it."""
 
-    vary: Vary = quantity({}, help='key -> list of values, or range such as "1:20" or, with a step, "0:100:25"')
-    together: bool = quantity(
-        False, help="the first values of all keys are one member, the second ones the next; else all combinations"
-    )
-    action: Action = quantity("run", help="action for every member")
-    method: Method = quantity("impedance", help="how β is calibrated")
-    processes: int | None = quantity(
-        None, means="count", help="members at once; absent: as many as there are cores", ge=1, le=MOST_PROCESSES
-    )
+    vary: Vary = quantity({})
+    """key -> list of values, or range such as "1:20" or, with a step, "0:100:25" """
+    together: bool = quantity(False)
+    """the first values of all keys are one member, the second ones the next; else all combinations"""
+    action: Action = quantity("run")
+    """action for every member"""
+    method: Method = quantity("impedance")
+    """how β is calibrated"""
+    processes: int | None = quantity(None, means="count", ge=1, le=MOST_PROCESSES)
+    """members at once; absent: as many as there are cores"""

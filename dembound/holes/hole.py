@@ -1,12 +1,11 @@
 """The base of all holes: a name, a stage, the particles to remove, and the level floor that they leave at a side."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Literal, NamedTuple, Self
 
 import numpy as np
-from pydantic import model_validator
 
 from dembound.holes.outline import Outline
 from dembound.places import includes
@@ -31,24 +30,20 @@ class Hole(Table, ABC):
     """
 
     type: str
-    name: FileName = quantity(..., help="name in loads and messages")
-    stage: Literal["before", "after", "run"] = quantity(
-        "before",
-        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes '
-        'on; "run": excavated at a time of the run',
-    )
-    time: float | None = quantity(
-        None, unit="s", help='time of the run at which its disks vanish, with stage = "run"', ge=0.0
-    )
-    keep: Literal["outside", "inside"] = quantity("outside", help="which particles remain")
+    name: FileName = quantity()
+    """name in loads and messages"""
+    stage: Literal["before", "after", "run"] = quantity("before")
+    """ "before": the body is built with the hole; "after": excavated after the static stage, which then goes on; "run":
+    excavated at a time of the run"""
+    time: float | None = quantity(None, unit="s", ge=0.0)
+    """time of the run at which its disks vanish, with stage = "run" """
+    keep: Literal["outside", "inside"] = quantity("outside")
+    """which particles remain"""
 
-    @model_validator(mode="after")
-    def _in_time(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """A time of another stage, or none."""
         if (self.stage == "run") != (self.time is not None):
-            raise ValueError(
-                'time: is missing, with stage = "run"' if self.time is None else 'time: needs stage = "run"'
-            )
-        return self
+            yield 'time: is missing, with stage = "run"' if self.time is None else 'time: needs stage = "run"'
 
     @property
     def is_shape(self) -> bool:
@@ -99,7 +94,8 @@ class Hole(Table, ABC):
 class Centred(Hole):
     """A hole with a centre."""
 
-    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="centre [x, y]")
+    centre: tuple[float, float] = quantity(unit="m", means="place")
+    """centre [x, y]"""
 
     def shifted(self, by: tuple[float, float]) -> Self:
         """The hole shifted by (x, y) m."""

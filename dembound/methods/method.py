@@ -56,9 +56,8 @@ class Method(Table, ABC):
 class Peridynamic(Method):
     """A method with bonds of several lengths, in the whole bar or in parts of it, from the beginning or later."""
 
-    horizon: int = quantity(
-        ..., means="count", help="horizon m in spacings, at most half of those in the bar", ge=1, le=WIDEST
-    )
+    horizon: int = quantity(means="count", ge=1, le=WIDEST)
+    """horizon m in spacings, at most half of those in the bar"""
 
     @property
     def largest_horizon(self) -> int:
@@ -69,6 +68,5 @@ class Peridynamic(Method):
 class Triggered(Peridynamic):
     """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
 
-    trigger: float = quantity(
-        0.9, means="share", help="share of the critical stretch at which peridynamics begins", gt=0.0, le=1.0
-    )
+    trigger: float = quantity(0.9, means="share", gt=0.0, le=1.0)
+    """share of the critical stretch at which peridynamics begins"""

@@ -19,9 +19,8 @@ class Patch(Triggered):
     """
 
     type: Literal["patch"]
-    reach: int = quantity(
-        4, means="count", help="horizons that a zone extends beyond what made it, on either side", ge=1, le=WIDEST
-    )
+    reach: int = quantity(4, means="count", ge=1, le=WIDEST)
+    """horizons that a zone extends beyond what made it, on either side"""
 
     @property
     def name(self) -> str:

@@ -18,7 +18,8 @@ class Peridynamics(Peridynamic):
     """
 
     type: Literal["peridynamics"]
-    corrected_ends: bool = quantity(False, help="whether local springs repair the bar's soft ends")
+    corrected_ends: bool = quantity(False)
+    """whether local springs repair the bar's soft ends"""
 
     @property
     def name(self) -> str:

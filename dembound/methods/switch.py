@@ -17,10 +17,10 @@ class Switch(Triggered):
     """
 
     type: Literal["switch"]
-    before: Literal["finite_difference", "peridynamics"] = quantity(
-        "finite_difference", help='method before; "peridynamics" is that with m = 1'
-    )
-    corrected_ends: bool = quantity(False, help="whether local springs repair the bar's soft ends")
+    before: Literal["finite_difference", "peridynamics"] = quantity("finite_difference")
+    """method before; "peridynamics" is that with m = 1"""
+    corrected_ends: bool = quantity(False)
+    """whether local springs repair the bar's soft ends"""
 
     @property
     def name(self) -> str:

@@ -2,9 +2,10 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
@@ -58,15 +59,14 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
-    bricks: Count | None = quantity(None, means="count", help="number of bricks along x and y, instead of size")
-    origin: tuple[float, float] = quantity(
-        (0.0, 0.0),
-        unit="m",
-        means="place",
-        help="lower left corner of the disks; all places of a case are in these coordinates",
-    )
-    radius: float = quantity(unit="m", means=SIZE, help="radius, mean of a random packing", gt=0.0)
+    size: Extent | None = quantity(None, unit="m", means="length")
+    """width and height of the scene, whole bricks"""
+    bricks: Count | None = quantity(None, means="count")
+    """number of bricks along x and y, instead of size"""
+    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place")
+    """lower left corner of the disks; all places of a case are in these coordinates"""
+    radius: float = quantity(unit="m", means=SIZE, gt=0.0)
+    """radius, mean of a random packing"""
 
     @property
     @abstractmethod
@@ -156,22 +156,21 @@ class Packing(Table, ABC):
         sizes = {key: float(f"{length:.15g}") for key, length in self.scaled(factor).items()}
         return packing | {"size": [round(length, 10) for length in self.extent], **sizes}
 
-    @model_validator(mode="after")
-    def _whole_bricks(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """An extent that is not given once, or is not of whole bricks, or too many disks."""
         if (self.size is None) == (self.bricks is None):
-            raise ValueError("must have exactly one of size (m) and bricks (numbers), the extent of the scene")
+            yield "must have exactly one of size (m) and bricks (numbers), the extent of the scene"
+            return
         if (count := self.about(self.extent)) > MOST_DISKS:
             key = "bricks" if self.size is None else "size"
-            raise ValueError(f"{key}: holds {count:.3g} disks of this radius, must hold at most {MOST_DISKS:,}")
+            yield f"{key}: holds {count:.3g} disks of this radius, must hold at most {MOST_DISKS:,}"
+            return
         for whole, part in zip(self.extent, self.brick_size, strict=True):
             number = whole / part
             if number < 1.0 - TYPED or abs(number - round(number)) > TYPED * number:
                 below, above = part * int(number), part * (int(number) + 1)
                 would = f"{below:.10g} or {above:.10g}" if below > 0.0 else f"{above:.10g}"
-                raise ValueError(
-                    f"size: {whole:.10g} m is not a whole number of bricks of {part:.10g} m; {would} would be"
-                )
-        return self
+                yield f"size: {whole:.10g} m is not a whole number of bricks of {part:.10g} m; {would} would be"
 
 
 class DensePacking(Packing):
@@ -179,17 +178,16 @@ class DensePacking(Packing):
 
     packed_under_stress: ClassVar[bool] = True
 
-    radius_ratio: float = quantity(means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0)
-    brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
-    seed: int = quantity(0, means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
-    confining_stress: float | None = quantity(
-        None,
-        unit="Pa",
-        means="stress",
-        help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
-        gt=0.0,
-    )
-    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts, too", ge=0.0)
+    radius_ratio: float = quantity(means="ratio of radii", ge=1.0, le=4.0)
+    """largest over smallest radius"""
+    brick: Extent = quantity(unit="m", means="length")
+    """width and height of the periodic brick"""
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """seed of the random start"""
+    confining_stress: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
+    """pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it"""
+    bond_gap: float = quantity(0.0, unit="m", means="length", ge=0.0)
+    """gaps up to this are contacts, too"""
 
     @property
     def brick_size(self) -> tuple[float, float]:
@@ -243,14 +241,14 @@ class DensePacking(Packing):
             seed=self.seed,
         )
 
-    @model_validator(mode="after")
-    def _wide_brick(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """A brick that is too large or too small, or gaps that are too wide."""
+        yield from super().mistakes()
         if (count := self.about(self.brick)) > MOST_IN_BRICK:
-            raise ValueError(f"brick: holds {count:.3g} disks of this radius, must hold at most {MOST_IN_BRICK:,}")
+            yield f"brick: holds {count:.3g} disks of this radius, must hold at most {MOST_IN_BRICK:,}"
         # below four diameters a disk could touch another one through two faces at once
         least = 8.0 * self.largest_radius
         if min(self.brick) < least:
-            raise ValueError(f"brick: {min(self.brick):g} m is too small, {least:.4g} m is the least for these disks")
+            yield f"brick: {min(self.brick):g} m is too small, {least:.4g} m is the least for these disks"
         if self.bond_gap > self.radius:
-            raise ValueError(f"bond_gap: {self.bond_gap:g} m is larger than the mean radius {self.radius:g} m")
-        return self
+            yield f"bond_gap: {self.bond_gap:g} m is larger than the mean radius {self.radius:g} m"

@@ -124,23 +124,18 @@ def with_columns(
         columns.append(Column(disks, column.copies, column.size, column.extent, corner))
         seams.append(_seam_of(brick, body, each, column, first, disks, count))
         begin = disks.stop
+    parts, begins = [*built, body], [*(of.disks.start for of in columns), count]
+    shifted = [own.positions + of.origin for own, of in zip(built, columns, strict=True)]
     joint = replace(
         body,
-        positions=np.vstack(
-            [*(own.positions + of.origin for own, of in zip(built, columns, strict=True)), body.positions]
-        ),
-        radii=np.concatenate([*(each.radii for each in built), body.radii]),
-        brick_particle=np.concatenate([*(each.brick_particle for each in built), body.brick_particle]),
-        tile=np.vstack([*(each.tile for each in built), body.tile]),
-        pairs=np.vstack(
-            [
-                *(own.pairs + np.int32(of.disks.start) for own, of in zip(built, columns, strict=True)),
-                body.pairs + np.int32(count),
-            ]
-        ),
-        contact_type=np.concatenate([*(each.contact_type for each in built), body.contact_type]),
+        positions=np.vstack([*shifted, body.positions]),
+        radii=np.concatenate([each.radii for each in parts]),
+        brick_particle=np.concatenate([each.brick_particle for each in parts]),
+        tile=np.vstack([each.tile for each in parts]),
+        pairs=np.vstack([each.pairs + np.int32(first) for each, first in zip(parts, begins, strict=True)]),
+        contact_type=np.concatenate([each.contact_type for each in parts]),
         columns=tuple(columns),
-        loose=sum(each.loose for each in built) + body.loose,
+        loose=sum(each.loose for each in parts),
     )
     return joint, tuple(seams)
 

@@ -17,12 +17,8 @@ class EdgedBrick(DensePacking):
     regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 
     pattern: Literal["C"] = "C"
-    edge_radius: float = quantity(
-        unit="m",
-        means="size of a particle",
-        help="radius of the row disks, adjusted to whole disks",
-        gt=0.0,
-    )
+    edge_radius: float = quantity(unit="m", means="size of a particle", gt=0.0)
+    """radius of the row disks, adjusted to whole disks"""
 
     @property
     def edge_radii(self) -> tuple[float, float]:

@@ -21,7 +21,8 @@ class Constant(Shape):
     stays: ClassVar[bool] = True
 
     type: Literal["constant"]
-    rise: float = quantity(0.0, unit="s", help="length of the smooth ramp to the full velocity", ge=0.0)
+    rise: float = quantity(0.0, unit="s", ge=0.0)
+    """length of the smooth ramp to the full velocity"""
 
     def _progress(self, since: np.ndarray) -> np.ndarray:
         """Position on the ramp: 0 before, 1 after."""

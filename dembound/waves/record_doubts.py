@@ -88,10 +88,7 @@ TENTHS = 10
 NET = 0.25
 """Displacement by an offset of the last tenth over the whole record, over the largest displacement."""
 
-WORDS = {
-    "accelerations": r"acc|accel|accelerations?",
-    "displacements": r"disp|displ|displacements?",
-}
+WORDS = {"accelerations": r"acc|accel|accelerations?", "displacements": r"disp|displ|displacements?"}
 """Words of a header that say that its values are not velocities."""
 
 READ_AS = {"m/s": "velocities", "Pa": "pressures", "N": "forces", "m/s²": "accelerations"}

@@ -20,9 +20,12 @@ class SineBurst(Shape):
     """
 
     type: Literal["sine_burst"]
-    frequency: float = quantity(..., unit="Hz", help="frequency of the sine", gt=0.0)
-    cycles: int = quantity(..., means="count", help="number of cycles", ge=1, le=MOST_CYCLES)
-    taper: bool = quantity(True, help="a Hann window fades the burst in and out")
+    frequency: float = quantity(unit="Hz", gt=0.0)
+    """frequency of the sine"""
+    cycles: int = quantity(means="count", ge=1, le=MOST_CYCLES)
+    """number of cycles"""
+    taper: bool = quantity(True)
+    """a Hann window fades the burst in and out"""
 
     def _harmonics(self) -> tuple[tuple[int, float], ...]:
         """The burst as plain sines (cycles k in the burst's length, factor): Σ factor · sin(2πk·t/length)."""

@@ -101,12 +101,11 @@ class Wave(Table, ABC):
     halves: ClassVar[bool] = False
 
     type: str
-    start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
-    motion: Literal["incident", "outcrop", "within"] | None = quantity(
-        None,
-        help='what moves so: the "incident" wave; a free "outcrop" of the rock, twice as '
-        'fast; the ground at the side, "within"; absent: incident, at sides of prescribed velocity within',
-    )
+    start: float = quantity(0.0, unit="s", ge=0.0)
+    """time at which the wave begins"""
+    motion: Literal["incident", "outcrop", "within"] | None = quantity(None)
+    """what moves so: the "incident" wave; a free "outcrop" of the rock, twice as fast; the ground at the side,
+    "within"; absent: incident, at sides of prescribed velocity within"""
 
     @property
     def share(self) -> float:
@@ -200,9 +199,8 @@ class Shape(Wave):
 
     halves: ClassVar[bool] = True
 
-    amplitude: NonZero = quantity(
-        ..., unit="m/s", means="velocity", help="factor M of the shape, of either sign; not 0"
-    )
+    amplitude: NonZero = quantity(unit="m/s", means="velocity")
+    """factor M of the shape, of either sign; not 0"""
 
     @model_validator(mode="after")
     def _resolved(self) -> Self:
@@ -233,7 +231,8 @@ class Shape(Wave):
 class Pulse(Shape):
     """One smooth one-sided pulse whose length is a period, with its crest in the middle."""
 
-    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
+    period: float = quantity(unit="s", means="period", gt=0.0)
+    """length T of the pulse"""
 
     def peak_time(self) -> float:
         """Time of the crest, half a period after the start, s."""

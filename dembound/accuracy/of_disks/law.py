@@ -99,7 +99,11 @@ def elastic_twin(
     kept_out = (*HISTORY_KEYS, ROLLING_KEY)
     given = {key: value for key, value in case.material.given().items() if key not in kept_out}
     law = {"law": LAWS[case.material.law].linear}
-    rolling = {f"layer.{number}.{ROLLING_KEY}": None for number, each in enumerate(case.layer, start=1) if each.rr_fric}
+    rolling = {
+        f"layer.{number}.{ROLLING_KEY}": None
+        for number, each in enumerate(case.layer, start=1)
+        if ROLLING_KEY in each.own
+    }
     strong = {"material": given | law, "output.load_factor": True} | rolling
     weak: dict[str, Any] = {"material": {key: value for key, value in given.items() if key not in BOND_KEYS} | law}
     weak |= rolling

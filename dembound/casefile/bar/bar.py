@@ -16,52 +16,45 @@ class BarRange(Table):
     A contact at an interface opens where it would have to pull.
     """
 
-    name: FileName = quantity(..., help="name in messages and results")
-    length: float = quantity(..., unit="m", means="length", help="length of the range", gt=0.0)
-    spacing: float | None = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="distance of its nodes; its length is a whole number of them, two or more",
-        gt=0.0,
-    )
-    section: float | None = quantity(None, unit="m²", help="area of its cross-section", gt=0.0)
-    diameter: float | None = quantity(
-        None, unit="m", means="thickness", help="diameter of a round range, instead of section", gt=0.0
-    )
-    density: float | None = quantity(None, unit="kg/m³", help="density ρ", gt=0.0)
-    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", help="speed c of its waves", gt=0.0)
-    youngs_modulus: float | None = quantity(
-        None, unit="Pa", means="modulus", help="Young's modulus E, instead of wave_speed", gt=0.0
-    )
-    strength: float | None = quantity(None, unit="Pa", means="strength", help="tensile strength σ_t", gt=0.0)
-    critical_stretch: float | None = quantity(
-        None, means="strain", help="stretch s₀ at which a bond breaks, instead of strength", gt=0.0
-    )
-    fracture_energy: float | None = quantity(None, unit="J/m²", help="fracture energy G_f of its cracks", gt=0.0)
-    strength_per_decade: float | None = quantity(
-        None, unit="Pa", means="strength", help="rise of its strength for a tenfold strain rate", gt=0.0
-    )
-    strength_rates: tuple[float, float] | None = quantity(
-        None, unit="1/s", help="strain rates [slowest, fastest] between which the strength rises"
-    )
-    attenuation: float | None = quantity(None, unit="1/m", help="α of its attenuation", ge=0.0)
-    velocity: float = quantity(
-        0.0,
-        unit="m/s",
-        means="velocity",
-        help="velocity of the whole range at the start, positive to the right, as of a striker",
-    )
-    interface: Literal["bonded", "contact"] = quantity(
-        "bonded", help="interface with the range on its left; a contact bears no tension"
-    )
-    gap: float = quantity(0.0, unit="m", means="gap", help="opening of the contact on its left at the start", ge=0.0)
+    name: FileName = quantity()
+    """name in messages and results"""
+    length: float = quantity(unit="m", means="length", gt=0.0)
+    """length of the range"""
+    spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """distance of its nodes; its length is a whole number of them, two or more"""
+    section: float | None = quantity(None, unit="m²", gt=0.0)
+    """area of its cross-section"""
+    diameter: float | None = quantity(None, unit="m", means="thickness", gt=0.0)
+    """diameter of a round range, instead of section"""
+    density: float | None = quantity(None, unit="kg/m³", gt=0.0)
+    """density ρ"""
+    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """speed c of its waves"""
+    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """Young's modulus E, instead of wave_speed"""
+    strength: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """tensile strength σ_t"""
+    critical_stretch: float | None = quantity(None, means="strain", gt=0.0)
+    """stretch s₀ at which a bond breaks, instead of strength"""
+    fracture_energy: float | None = quantity(None, unit="J/m²", gt=0.0)
+    """fracture energy G_f of its cracks"""
+    strength_per_decade: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """rise of its strength for a tenfold strain rate"""
+    strength_rates: tuple[float, float] | None = quantity(None, unit="1/s")
+    """strain rates [slowest, fastest] between which the strength rises"""
+    attenuation: float | None = quantity(None, unit="1/m", ge=0.0)
+    """α of its attenuation"""
+    velocity: float = quantity(0.0, unit="m/s", means="velocity")
+    """velocity of the whole range at the start, positive to the right, as of a striker"""
+    interface: Literal["bonded", "contact"] = quantity("bonded")
+    """interface with the range on its left; a contact bears no tension"""
+    gap: float = quantity(0.0, unit="m", means="gap", ge=0.0)
+    """opening of the contact on its left at the start"""
 
-    @model_validator(mode="after")
-    def _gap_of_contact(self) -> "BarRange":
+    def mistakes(self) -> Iterator[str]:
+        """A gap of ranges that are bonded."""
         if self.gap > 0.0 and self.interface != "contact":
-            raise ValueError('gap: is only allowed with interface = "contact"')
-        return self
+            yield 'gap: is only allowed with interface = "contact"'
 
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
@@ -92,73 +85,48 @@ class Bar(Table):
     A bar with ranges is a row of uniform bars, for which its own keys are defaults.
     """
 
-    length: float = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="length L; with ranges it is that of all with their gaps, and may be left out",
-        gt=0.0,
-    )
-    spacing: float = quantity(
-        ...,
-        unit="m",
-        means="length",
-        help="distance Δx from node to node; L is a whole number of them, two or more",
-        gt=0.0,
-    )
-    section: float | None = quantity(None, unit="m²", help="area of the cross-section; absent: 1 m²", gt=0.0)
-    diameter: float | None = quantity(
-        None, unit="m", means="thickness", help="diameter of a round bar, instead of section", gt=0.0
-    )
-    density: float = quantity(..., unit="kg/m³", help="density ρ", gt=0.0)
-    wave_speed: float | None = quantity(
-        None, unit="m/s", means="wave speed", help="speed c of waves along the bar", gt=0.0
-    )
-    youngs_modulus: float | None = quantity(
-        None,
-        unit="Pa",
-        means="modulus",
-        help="Young's modulus E = ρc², instead of wave_speed; one of them is needed",
-        gt=0.0,
-    )
-    strength: float | None = quantity(
-        None, unit="Pa", means="strength", help="tensile strength σ_t; absent: unbreakable", gt=0.0
-    )
-    critical_stretch: float | None = quantity(
-        None, means="strain", help="stretch s₀ = σ_t/E at which a bond breaks, instead of strength", gt=0.0
-    )
-    fracture_energy: float | None = quantity(
-        None, unit="J/m²", help="fracture energy G_f of cracks; absent: bonds break at once", gt=0.0
-    )
-    strength_per_decade: float | None = quantity(
-        None,
-        unit="Pa",
-        means="strength",
-        help="rise of the strength for a tenfold strain rate, within strength_rates; needs fracture_energy",
-        gt=0.0,
-    )
-    strength_rates: tuple[float, float] | None = quantity(
-        None, unit="1/s", help="strain rates [slowest, fastest] between which the strength rises; below it is strength"
-    )
-    attenuation: float = quantity(
-        0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0
-    )
-    range: tuple[BarRange, ...] = quantity((), help="parts of a bar of several materials, from left to right")
+    length: float = quantity(None, unit="m", means="length", gt=0.0)
+    """length L; with ranges it is that of all with their gaps, and may be left out"""
+    spacing: float = quantity(unit="m", means="length", gt=0.0)
+    """distance Δx from node to node; L is a whole number of them, two or more"""
+    section: float | None = quantity(None, unit="m²", gt=0.0)
+    """area of the cross-section; absent: 1 m²"""
+    diameter: float | None = quantity(None, unit="m", means="thickness", gt=0.0)
+    """diameter of a round bar, instead of section"""
+    density: float = quantity(unit="kg/m³", gt=0.0)
+    """density ρ"""
+    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """speed c of waves along the bar"""
+    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """Young's modulus E = ρc², instead of wave_speed; one of them is needed"""
+    strength: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """tensile strength σ_t; absent: unbreakable"""
+    critical_stretch: float | None = quantity(None, means="strain", gt=0.0)
+    """stretch s₀ = σ_t/E at which a bond breaks, instead of strength"""
+    fracture_energy: float | None = quantity(None, unit="J/m²", gt=0.0)
+    """fracture energy G_f of cracks; absent: bonds break at once"""
+    strength_per_decade: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """rise of the strength for a tenfold strain rate, within strength_rates; needs fracture_energy"""
+    strength_rates: tuple[float, float] | None = quantity(None, unit="1/s")
+    """strain rates [slowest, fastest] between which the strength rises; below it is strength"""
+    attenuation: float = quantity(0.0, unit="1/m", ge=0.0)
+    """α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)"""
+    range: tuple[BarRange, ...] = quantity(())
+    """parts of a bar of several materials, from left to right"""
+
+    def mistakes(self) -> Iterator[str]:
+        """Keys that are given twice or lack others, and mistakes of ranges."""
+        for first, second in PAIRS:
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                yield f"{second}: is not allowed together with {first}"
+        stiffness = list(self._problems_with_stiffness())
+        yield from stiffness
+        yield from self._problems_with_ranges() if self.range else self._problems_with_spacing()
+        if not self.range and not stiffness:
+            yield from list(self._problems_with_rates()) or self._problems_with_cracks()
 
     @model_validator(mode="after")
-    def _consistent(self) -> "Bar":
-        problems = [
-            f"{second}: is not allowed together with {first}"
-            for first, second in PAIRS
-            if getattr(self, first) is not None and getattr(self, second) is not None
-        ]
-        stiffness = list(self._problems_with_stiffness())
-        problems += stiffness
-        problems += self._problems_with_ranges() if self.range else self._problems_with_spacing()
-        if not self.range and not stiffness:
-            problems += list(self._problems_with_rates()) or self._problems_with_cracks()
-        if problems:
-            raise ValueError("\n".join(problems))
+    def _as_long_as_its_ranges(self) -> "Bar":
         if self.range and "length" not in self.model_fields_set:
             self.__dict__["length"] = self._whole_length
         return self

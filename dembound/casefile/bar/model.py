@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pydantic import TypeAdapter, model_validator
+from pydantic import TypeAdapter
 
 from dembound.boundaries.edge import normal_axis
 from dembound.casefile.bar.bar import MOST_CELLS, Bar
@@ -31,38 +31,40 @@ class BarLoad(Table):
     on one node it breaks them.
     """
 
-    name: FileName = quantity(..., help="name in messages and results")
-    pressure: float = quantity(
-        ..., unit="Pa", means="pressure of a load", help="pressure on the section; negative values pull"
-    )
-    side: Literal["left", "right"] = quantity("left", help="end of the bar it acts on")
-    nodes: int = quantity(
-        1, means="count", help="number of nodes it is spread over, from the end inwards", ge=1, le=MOST_CELLS + 1
-    )
-    wave: str = quantity(..., help="name of the wave that is the time factor")
+    name: FileName = quantity()
+    """name in messages and results"""
+    pressure: float = quantity(unit="Pa", means="pressure of a load")
+    """pressure on the section; negative values pull"""
+    side: Literal["left", "right"] = quantity("left")
+    """end of the bar it acts on"""
+    nodes: int = quantity(1, means="count", ge=1, le=MOST_CELLS + 1)
+    """number of nodes it is spread over, from the end inwards"""
+    wave: str = quantity()
+    """name of the wave that is the time factor"""
 
 
 class BarMonitor(Table):
     """A gauge: records motion and stress of the nearest node, half-way between two nodes of the left one."""
 
-    name: FileName = quantity(..., help="name of the history in the results")
-    position: float = quantity(..., unit="m", means="place", help="where, from the bar's left end", ge=0.0)
+    name: FileName = quantity()
+    """name of the history in the results"""
+    position: float = quantity(unit="m", means="place", ge=0.0)
+    """where, from the bar's left end"""
 
 
 class BarRun(Run):
     """The simulated time and the time step of a bar; the step may be given by the Courant number."""
 
-    courant: float | None = quantity(
-        None, means="Courant number", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0
-    )
+    courant: float | None = quantity(None, means="Courant number", gt=0.0)
+    """Courant number ν = cΔt/Δx, instead of a time step"""
 
-    @model_validator(mode="after")
-    def _one_step(self) -> "BarRun":
+    def mistakes(self) -> Iterator[str]:
+        """A step that is given twice."""
+        yield from super().mistakes()
         if self.courant is not None and self.time_step != "auto":
-            raise ValueError("courant: is not allowed together with time_step")
+            yield "courant: is not allowed together with time_step"
         if self.courant is not None and "safety" in self.model_fields_set:
-            raise ValueError("safety: is for an automatic time step, courant gives it")
-        return self
+            yield "safety: is for an automatic time step, courant gives it"
 
 
 FEWEST_CELLS = 3

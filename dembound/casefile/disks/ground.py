@@ -1,20 +1,21 @@
 """The ``[ground]`` table, ground of two heights, and mistakes of holes that depend on other tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic import PrivateAttr
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, is_far, plane_of
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.load import Load
-from dembound.casefile.disks.surface import air_above, points_in_file, require_surface
-from dembound.casefile.messages import choices, corners, numbered, show
+from dembound.casefile.disks.surface import air_above, points_in_file
+from dembound.casefile.messages import choices, corners, counted, numbered, show
 from dembound.casefile.types import LAWS
 from dembound.holes.hole import Floor, Hole, floor_beside
-from dembound.holes.polygon import Points, Polygon
+from dembound.holes.shapes import Points, Polygon
 from dembound.packings.base import TYPED, Extent, Packing
 from dembound.table import Box, Table, quantity
 
@@ -29,37 +30,32 @@ class Ground(Table):
     Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
     """
 
-    size: Extent | None = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="width and height, whole bricks high; absent: the disks fill all of the ground",
-    )
-    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
-    surface: Points | str | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the "
-        "folder of the case; level over four diameters at the sides of the disks; absent: the top of the disks",
-    )
-    meet: float | None = quantity(
-        None, unit="m", means="place", help='x of the vertical plane between layers of side "left" and "right"'
-    )
+    size: Extent | None = quantity(None, unit="m", means="length")
+    """width and height, whole bricks high; absent: the disks fill all of the ground"""
+    origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place")
+    """lower left corner of the ground"""
+    surface: Points | str | None = quantity(None, unit="m", means="place")
+    """free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the folder of
+    the case; level over four diameters at the sides of the disks; absent: the top of the disks"""
+    meet: float | None = quantity(None, unit="m", means="place")
+    """x of the vertical plane between layers of side "left" and "right" """
 
     _points: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")
 
-    @model_validator(mode="after")
-    def _from_left_to_right(self, info: ValidationInfo) -> "Ground":
-        if self.surface is None:
-            return self
+    def model_post_init(self, context: Mapping[str, Any] | None) -> None:
+        """Reads its surface, if that is in a file."""
         if isinstance(self.surface, str):
-            self._points, self._text = points_in_file(self.surface, info.context or {})
+            self._points, self._text = points_in_file(self.surface, context or {})
         else:
-            self._points = self.surface
-        require_surface(self._points)
-        return self
+            self._points = self.surface or ()
+
+    def mistakes(self) -> Iterator[str]:
+        """Points that are no surface from left to right."""
+        if self.surface is not None and len(self.points) < 2:
+            yield f"surface: has {counted(len(self.points), 'point')}, must have at least two"
+        if any(after < before for (before, _), (after, _) in pairwise(self.points)):
+            yield "surface: must go from left to right, so that no x is less than the one before"
 
     @property
     def files(self) -> dict[str, str]:

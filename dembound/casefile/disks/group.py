@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic import ValidationError, model_validator
+from pydantic import ValidationError
 
-from dembound.casefile.disks.layer import Differing, as_in_material, problems_of_material
+from dembound.casefile.disks.layer import OF_PARTS, Differing, problems_of_material, with_keys_of_material
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.stiffness import RATIO_KEYS, STIFFNESS_KEYS
 from dembound.casefile.disks.targets import with_history
 from dembound.casefile.messages import corners, numbered
 from dembound.casefile.types import LAWS
 from dembound.holes import Polygon, Rectangle
-from dembound.holes.polygon import Points
+from dembound.holes.shapes import Points
 from dembound.places import includes
 from dembound.table import Box, FileName, quantity
 
@@ -31,7 +31,7 @@ MOST = 32
 """Largest number of groups."""
 
 
-class Group(Differing):
+class GroupTable(Differing):
     """The disks of a part of the ground, with strengths, friction or moduli of their own.
 
     Absent keys are those of the ground there; of groups that overlap, those of the later one hold. Contacts and bonds
@@ -39,62 +39,29 @@ class Group(Differing):
     its friction and strengths hold from then on.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the group in messages and pictures")
-    region: Box | None = quantity(
-        None, unit="m", means="place", help="rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"
-    )
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region",
-    )
-    time: float | None = quantity(
-        None,
-        unit="s",
-        help="time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always",
-        ge=0.0,
-    )
-    p_wave_speed: float | None = as_in_material("p_wave_speed")
-    s_wave_speed: float | None = as_in_material("s_wave_speed")
-    young: float | None = as_in_material("young")
-    poisson: float | None = as_in_material("poisson")
-    bulk: float | None = as_in_material("bulk")
-    shear: float | None = as_in_material("shear")
-    plane: Literal["strain", "stress"] | None = as_in_material("plane")
-    along: Literal["isotropic", "x", "y"] | None = as_in_material("along")
-    emod: float | None = as_in_material("emod")
-    pb_emod: float | None = as_in_material("pb_emod")
-    kratio: float | None = as_in_material("kratio")
-    pb_kratio: float | None = as_in_material("pb_kratio")
-    fric: float | None = as_in_material("fric")
-    rr_fric: float | None = as_in_material("rr_fric")
-    pb_ten: float | None = as_in_material("pb_ten")
-    pb_coh: float | None = as_in_material("pb_coh")
-    pb_fa: float | None = as_in_material("pb_fa")
-    pb_mcf: float | None = as_in_material("pb_mcf")
+    name: FileName = quantity()
+    """name of the group in messages and pictures"""
+    region: Box | None = quantity(None, unit="m", means="place")
+    """rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"""
+    points: Points | None = quantity(None, unit="m", means="place")
+    """corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region"""
+    time: float | None = quantity(None, unit="s", ge=0.0)
+    """time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always"""
 
-    @model_validator(mode="after")
-    def _one_place(self) -> "Group":
-        problems = []
-        if (self.region is None) == (self.points is None):
-            missing = self.points is None
-            problems.append(
-                "region: is missing; give either region or points"
-                if missing
-                else "points: is not allowed together with region"
-            )
+    def mistakes(self) -> Iterator[str]:
+        """Not one place, nothing that differs, or keys that cannot change in time."""
+        if self.region is None and self.points is None:
+            yield "region: is missing; give either region or points"
+        if self.region is not None and self.points is not None:
+            yield "points: is not allowed together with region"
         if self.region is not None and not (self.region[0] < self.region[2] and self.region[1] < self.region[3]):
-            problems.append("region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1")
+            yield "region: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1"
         if self.points is not None and len(self.points) < 3:
-            problems.append(f"points: has {len(self.points)}, must have at least three")
+            yield f"points: has {len(self.points)}, must have at least three"
         if not self.own:
-            problems.append("pb_ten: is missing, and any other key of the ground; a group must differ from it")
+            yield "pb_ten: is missing, and any other key of the ground; a group must differ from it"
         if self.time is not None and (fixed := [key for key in self.own if key not in IN_TIME]):
-            problems.append(f"{fixed[0]}: cannot change in a run; leave time out, or give {', '.join(IN_TIME)} alone")
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+            yield f"{fixed[0]}: cannot change in a run; leave time out, or give {', '.join(IN_TIME)} alone"
 
     @cached_property
     def shape(self) -> Polygon | Rectangle:
@@ -111,6 +78,12 @@ class Group(Differing):
     def is_stiff(self) -> bool:
         """Whether its springs are its own."""
         return not self.own.keys().isdisjoint(MODULI)
+
+
+if TYPE_CHECKING:
+    Group = GroupTable
+else:
+    Group = with_keys_of_material(GroupTable, "Group", OF_PARTS)
 
 
 def group_problems(tables: Mapping[str, Any]) -> Iterator[str]:
@@ -151,7 +124,7 @@ def _materials(layers: Sequence[Any], material: Material) -> list[Material]:
 
 def _of_springs(place: str, group: Group, own: Material, beside: Material) -> Iterator[str]:
     """A friction that gives contacts a shear stiffness, or takes it, and a change of it in time."""
-    if group.fric is not None and (own.fric > 0.0) != (beside.fric > 0.0) and not group.is_stiff:
+    if "fric" in group.own and (own.fric > 0.0) != (beside.fric > 0.0) and not group.is_stiff:
         yield (
             f"{place}.fric: is {own.fric:g}, and {beside.fric:g} in the ground beside it: without friction contacts "
             "have no shear stiffness; give both some, such as 1e-6"

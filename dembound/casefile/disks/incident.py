@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES, normal_axis
@@ -23,43 +23,26 @@ class Damping(Table):
     The stiffness of damped ground grows with the frequency, so that wave speeds hold at one frequency.
     """
 
-    type: Literal["quality", "rayleigh"] = quantity(
-        "quality",
-        unit="1",
-        help='"quality": nearly constant Q; "rayleigh": drag αm and βdF/dt, with ξ = 1/(2Q) at both ends of the band',
-    )
-    band: tuple[float, float] | None = quantity(
-        None,
-        unit="Hz",
-        help="lowest and highest frequency of nearly constant Q; absent: that of the waves, or 0.3 to 10 Hz",
-    )
-    frequency: float | None = quantity(
-        None,
-        unit="Hz",
-        help="frequency at which the wave speeds and moduli hold; absent: the geometric mean of the band",
-        gt=0.0,
-    )
-    mechanisms: int = quantity(
-        3, unit="1", means="count", help="relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz", ge=2, le=6
-    )
+    type: Literal["quality", "rayleigh"] = quantity("quality")
+    """ "quality": nearly constant Q; "rayleigh": drag αm and βdF/dt, with ξ = 1/(2Q) at both ends of the band"""
+    band: tuple[float, float] | None = quantity(None, unit="Hz")
+    """lowest and highest frequency of nearly constant Q; absent: that of the waves, or 0.3 to 10 Hz"""
+    frequency: float | None = quantity(None, unit="Hz", gt=0.0)
+    """frequency at which the wave speeds and moduli hold; absent: the geometric mean of the band"""
+    mechanisms: int = quantity(3, means="count", ge=2, le=6)
+    """relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz"""
 
-    @model_validator(mode="after")
-    def _ascending(self) -> "Damping":
+    def mistakes(self) -> Iterator[str]:
+        """A band that does not ascend, and keys of mechanisms without any."""
         if self.band is not None and not 0.0 < LEAST_RATIO * self.band[0] <= self.band[1]:
             low, high = self.band
-            raise ValueError(
+            yield (
                 f"band: is [{low:g}, {high:g}], must be two frequencies above 0, the second at least {LEAST_RATIO:g} "
                 "times the first"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _only_of_mechanisms(self) -> "Damping":
-        if self.type == "rayleigh":
-            given = [key for key in ("frequency", "mechanisms") if key in self.model_fields_set]
-            if given:
-                raise ValueError("\n".join(f'{key}: is only allowed with type = "quality"' for key in given))
-        return self
+        for key in ("frequency", "mechanisms") if self.type == "rayleigh" else ():
+            if key in self.model_fields_set:
+                yield f'{key}: is only allowed with type = "quality"'
 
     @property
     def memories(self) -> int:
@@ -103,7 +86,8 @@ Freedom = Literal["x", "y", "rotation"]
 class Motion(Table):
     """Components of the motion that are held for all particles."""
 
-    held: tuple[Freedom, ...] = quantity((), unit="1", help="components held at zero for every particle")
+    held: tuple[Freedom, ...] = quantity(())
+    """components held at zero for every particle"""
 
     @field_validator("held")
     @classmethod
@@ -120,22 +104,14 @@ class IncidentWave(Table):
     its direction (P), or to the right of it (SV).
     """
 
-    type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave: SV or P")
-    angle: float = quantity(
-        ...,
-        unit="degrees",
-        means="direction",
-        help="from the vertical, of the direction in which it runs, in the lowest layer; positive to the right",
-        gt=-90.0,
-        lt=90.0,
-    )
-    wave: str = quantity(..., unit="1", help="name of the wave whose velocity it has")
-    point: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="where the incident wave has this velocity; absent: the lower corner of the ground it reaches first",
-    )
+    type: Literal["sv", "p"] = quantity()
+    """kind of wave: SV or P"""
+    angle: float = quantity(unit="degrees", means="direction", gt=-90.0, lt=90.0)
+    """from the vertical, of the direction in which it runs, in the lowest layer; positive to the right"""
+    wave: str = quantity()
+    """name of the wave whose velocity it has"""
+    point: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """where the incident wave has this velocity; absent: the lower corner of the ground it reaches first"""
 
 
 def incident_problems(incident: IncidentWave, tables: Mapping[str, Any]) -> Iterator[str]:

@@ -3,15 +3,15 @@
 import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from pydantic import PrivateAttr, field_validator, model_validator
+from pydantic import PrivateAttr, field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.messages import numbered
 from dembound.casefile.types import LAWS
-from dembound.holes.polygon import Points
+from dembound.holes.shapes import Points
 from dembound.table import FileName, Table, quantity
 
 KINK = 10.0
@@ -36,45 +36,34 @@ STRENGTH_KEYS = ("ten", "coh")
 class JointKeys(Table):
     """The name of a joint, or of a set, and the constants of its faces."""
 
-    name: FileName = quantity(
-        ..., unit="1", help="name of the joint in messages and results; of a set without the numbers"
-    )
-    kn: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="normal stiffness per area", gt=0.0)
-    ks: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="shear stiffness per area", gt=0.0)
-    fric: float | None = quantity(
-        None,
-        unit="1",
-        means="friction coefficient",
-        help="friction coefficient; absent: the joint stays closed, and does not slide",
-        ge=0.0,
-    )
-    ten: float = quantity(0.0, unit="Pa", means="strength", help="tensile strength", ge=0.0)
-    coh: float = quantity(0.0, unit="Pa", means="strength", help="cohesion", ge=0.0)
-    dilation: float = quantity(
-        0.0,
-        unit="degrees",
-        means="direction",
-        help="angle at which the faces ride up on each other as they slide, below that of fric",
-        ge=0.0,
-        lt=90.0,
-    )
-    dilation_end: float | None = quantity(
-        None, unit="m", means="length", help="slip at which they rise no more; absent: at none", gt=0.0
-    )
-    dashpot: float = quantity(
-        1.0, unit="1", means="factor", help="normal dashpot of sliding faces, over ρ c_p of the ground", ge=0.0, le=10.0
-    )
+    name: FileName = quantity()
+    """name of the joint in messages and results; of a set without the numbers"""
+    kn: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
+    """normal stiffness per area"""
+    ks: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
+    """shear stiffness per area"""
+    fric: float | None = quantity(None, means="friction coefficient", ge=0.0)
+    """friction coefficient; absent: the joint stays closed, and does not slide"""
+    ten: float = quantity(0.0, unit="Pa", means="strength", ge=0.0)
+    """tensile strength"""
+    coh: float = quantity(0.0, unit="Pa", means="strength", ge=0.0)
+    """cohesion"""
+    dilation: float = quantity(0.0, unit="degrees", means="direction", ge=0.0, lt=90.0)
+    """angle at which the faces ride up on each other as they slide, below that of fric"""
+    dilation_end: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """slip at which they rise no more; absent: at none"""
+    dashpot: float = quantity(1.0, means="factor", ge=0.0, le=10.0)
+    """normal dashpot of sliding faces, over ρ c_p of the ground"""
 
-    @model_validator(mode="after")
-    def _fails_by_friction(self) -> Self:
+    def mistakes(self) -> Iterator[str]:
+        """Strengths without a friction, and a dilation that it does not allow."""
         if self.fric is None and (given := [key for key in STRENGTH_KEYS if getattr(self, key) > 0.0]):
-            raise ValueError(f"{given[0]}: needs fric, the friction that is left once the joint has failed")
+            yield f"{given[0]}: needs fric, the friction that is left once the joint has failed"
         if self.dilation > 0.0 and math.tan(math.radians(self.dilation)) >= (self.fric or 0.0):
             most = math.degrees(math.atan(self.fric or 0.0))
-            raise ValueError(f"dilation: is {self.dilation:g}, must be below the angle of fric, {most:.4g} (degrees)")
+            yield f"dilation: is {self.dilation:g}, must be below the angle of fric, {most:.4g} (degrees)"
         if self.dilation_end is not None and self.dilation == 0.0:
-            raise ValueError("dilation_end: needs dilation")
-        return self
+            yield "dilation_end: needs dilation"
 
     @property
     def constants(self) -> tuple[object, ...]:
@@ -88,9 +77,8 @@ class Joint(JointKeys):
     In a file it may be one of a set, see `joint_sets.JointTable`.
     """
 
-    points: Points = quantity(
-        ..., unit="m", means="place", help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"
-    )
+    points: Points = quantity(unit="m", means="place")
+    """the line: points [[x, y], …] in order, two or more, with kinks of up to 10°"""
 
     _left_out: float = PrivateAttr(0.0)
     _is_of_set: bool = PrivateAttr(False)

@@ -3,16 +3,16 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks.joint import APART, Joint, JointKeys, a_line, distance_to, goes_on
 from dembound.casefile.messages import numbered
 from dembound.holes.hole import Hole
-from dembound.holes.polygon import Points
+from dembound.holes.shapes import Points
 from dembound.table import LARGEST_WHOLE, Box, quantity
 
 MOST_LINES = 1000
@@ -39,62 +39,39 @@ class JointTable(JointKeys):
     sides; from all others lines stay three diameters away.
     """
 
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip",
-    )
-    dip: float | None = quantity(
-        None,
-        unit="degrees",
-        means="direction",
-        help="of a set: the angle below the horizontal at which its lines fall towards +x",
-        ge=-90.0,
-        le=90.0,
-    )
-    spacing: float | None = quantity(
-        None, unit="m", means="length", help="distance from one line of a set to the next, across them", gt=0.0
-    )
-    persistence: float = quantity(
-        1.0,
-        unit="1",
-        means="share",
-        help="share of the lines of a set that is cut; the rest is rock",
-        gt=0.0,
-        le=1.0,
-    )
-    trace: float | None = quantity(
-        None,
-        unit="m",
-        means="length",
-        help="mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them",
-        gt=0.0,
-    )
-    region: Box | Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere",
-    )
-    seed: int = quantity(0, unit="1", means="count", help="seed of the places of a set", ge=0, le=LARGEST_WHOLE)
+    points: Points | None = quantity(None, unit="m", means="place")
+    """the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip"""
+    dip: float | None = quantity(None, unit="degrees", means="direction", ge=-90.0, le=90.0)
+    """of a set: the angle below the horizontal at which its lines fall towards +x"""
+    spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """distance from one line of a set to the next, across them"""
+    persistence: float = quantity(1.0, means="share", gt=0.0, le=1.0)
+    """share of the lines of a set that is cut; the rest is rock"""
+    trace: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them"""
+    region: Box | Points | None = quantity(None, unit="m", means="place")
+    """where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere"""
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """seed of the places of a set"""
 
-    @model_validator(mode="after")
-    def _line_or_set(self) -> Self:
-        problems = []
+    def mistakes(self) -> Iterator[str]:
+        """Neither a line nor a set, or keys of the one or the other."""
+        yield from super().mistakes()
         if self.dip is None:
-            problems += ["points: is missing; give it, or dip"] if self.points is None else []
-            problems += [f"{key}: is for a set; give dip, too" for key in OF_SETS if key in self.model_fields_set]
+            if self.points is None:
+                yield "points: is missing; give it, or dip"
+            yield from (f"{key}: is for a set; give dip, too" for key in OF_SETS if key in self.model_fields_set)
         else:
-            problems += ["points: is not allowed together with dip"] if self.points is not None else []
-            problems += ["spacing: is missing; a set needs it"] if self.spacing is None else []
-            problems += ["trace: is missing; bridges need it"] if self.persistence < 1.0 and self.trace is None else []
-            problems += ["trace: needs persistence below 1"] if self.persistence == 1.0 and self.trace else []
+            if self.points is not None:
+                yield "points: is not allowed together with dip"
+            if self.spacing is None:
+                yield "spacing: is missing; a set needs it"
+            if self.persistence < 1.0 and self.trace is None:
+                yield "trace: is missing; bridges need it"
+            if self.persistence == 1.0 and self.trace:
+                yield "trace: needs persistence below 1"
         if self.corners is not None and len(self.corners) < 3:
-            problems.append("region: must be a box or at least three corners")
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+            yield "region: must be a box or at least three corners"
 
     @field_validator("points")
     @classmethod

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import pairwise
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Optional
 
-from pydantic import ValidationError, model_validator
+from pydantic import ValidationError, create_model
 
 from dembound.casefile.disks.material import TARGET_KEYS, Material
 from dembound.casefile.disks.stiffness import MODULI_KEYS, RATIO_KEYS, STIFFNESS_KEYS, WAVE_SPEED_KEYS
@@ -22,18 +22,16 @@ _WITHOUT = dict(zip(PAIRS, ((), ("along",), ("plane",)), strict=True))
 """Keys of `TARGET_KEYS` that each pair of targets does not have."""
 
 
-def as_in_material(key: str) -> Any:
-    """The field of a layer for a key of [material], with its meaning and limits; absent: as there."""
-    field, described = Material.model_fields[key], Material.described(key)
-    limits = {name: value for each in field.metadata for name, value in asdict(each).items()}
-    said = (field.description or "").split("; absent")[0]
-    return quantity(None, unit=described["unit"], means=described["means"], help=said, **limits)
-
-
 class Differing(Table):
     """A part of the ground that has some keys of [material] of its own."""
 
     name: str | None
+
+    @classmethod
+    def help_of(cls, name: str) -> str:
+        """What a field means, of a key of [material] as there."""
+        own = super().help_of(name)
+        return own or (Material.help_of(name).split("; absent")[0] if name in Material.model_fields else "")
 
     @property
     def own(self) -> dict[str, Any]:
@@ -52,55 +50,52 @@ class Differing(Table):
         return Material(**{key: value for key, value in material.given().items() if key not in gone} | own)
 
 
-class Layer(Differing):
+OF_PARTS = (
+    *("p_wave_speed", "s_wave_speed", "young", "poisson", "bulk", "shear", "plane", "along", "emod", "pb_emod"),
+    *("kratio", "pb_kratio", "fric", "rr_fric", "pb_ten", "pb_coh", "pb_fa", "pb_mcf"),
+)
+"""Keys of [material] that every part of the ground may have."""
+
+
+def with_keys_of_material(table: type[Differing], name: str, keys: Sequence[str]) -> Any:
+    """The table of a part of the ground with keys of [material], which may all be absent; name : of the class."""
+    fields: dict[str, Any] = {}
+    for key in keys:
+        field, described = Material.model_fields[key], Material.described(key)
+        limits = {name: value for each in field.metadata for name, value in asdict(each).items()}
+        own = quantity(None, unit=described["unit"], means=described["means"], **limits)
+        fields[key] = (Optional[field.annotation], own)  # noqa: UP045  # known at run time
+    return create_model(name, __base__=table, __doc__=table.__doc__, __module__=table.__module__, **fields)
+
+
+class LayerTable(Differing):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
     Absent keys are those of [material]. A layer that gives one of the keys for stiffness (wave speeds, targets, `emod`
     and `pb_emod`) takes none of them from there. Where every layer gives them or the density, [material] need not.
     """
 
-    name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
-    thickness: float | None = quantity(
-        None, unit="m", means="length", help="thickness; the last layer may have none and goes on below", gt=0.0
-    )
-    bottom: float | None = quantity(None, unit="m", means="place", help="height y at which it ends, for thickness")
-    side: Literal["left", "right"] | None = quantity(
-        None, unit="1", help="the side of ground.meet at which it is; absent: at both"
-    )
-    density: float | None = as_in_material("density")
-    p_wave_speed: float | None = as_in_material("p_wave_speed")
-    s_wave_speed: float | None = as_in_material("s_wave_speed")
-    young: float | None = as_in_material("young")
-    poisson: float | None = as_in_material("poisson")
-    bulk: float | None = as_in_material("bulk")
-    shear: float | None = as_in_material("shear")
-    plane: Literal["strain", "stress"] | None = as_in_material("plane")
-    along: Literal["isotropic", "x", "y"] | None = as_in_material("along")
-    emod: float | None = as_in_material("emod")
-    pb_emod: float | None = as_in_material("pb_emod")
-    kratio: float | None = as_in_material("kratio")
-    pb_kratio: float | None = as_in_material("pb_kratio")
-    fric: float | None = as_in_material("fric")
-    rr_fric: float | None = as_in_material("rr_fric")
-    pb_ten: float | None = as_in_material("pb_ten")
-    pb_coh: float | None = as_in_material("pb_coh")
-    pb_fa: float | None = as_in_material("pb_fa")
-    pb_mcf: float | None = as_in_material("pb_mcf")
-    quality_factor: float | None = as_in_material("quality_factor")
-    k0: float | None = quantity(
-        None,
-        unit="1",
-        means="ratio of stresses",
-        help="stress along x over that along y due to weight; absent: static.k0, which it needs",
-        ge=0.0,
-        le=5.0,
-    )
+    name: FileName | None = quantity(None)
+    """name in results; absent: its number, from 1 at the surface"""
+    thickness: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """thickness; the last layer may have none and goes on below"""
+    bottom: float | None = quantity(None, unit="m", means="place")
+    """height y at which it ends, for thickness"""
+    side: Literal["left", "right"] | None = quantity(None)
+    """the side of ground.meet at which it is; absent: at both"""
+    k0: float | None = quantity(None, means="ratio of stresses", ge=0.0, le=5.0)
+    """stress along x over that along y due to weight; absent: static.k0, which it needs"""
 
-    @model_validator(mode="after")
-    def _one_end(self) -> "Layer":
+    def mistakes(self) -> Iterator[str]:
+        """Two ends."""
         if self.thickness is not None and self.bottom is not None:
-            raise ValueError("bottom: is not allowed together with thickness; give one of them")
-        return self
+            yield "bottom: is not allowed together with thickness; give one of them"
+
+
+if TYPE_CHECKING:
+    Layer = LayerTable
+else:
+    Layer = with_keys_of_material(LayerTable, "Layer", ("density", *OF_PARTS, "quality_factor"))
 
 
 def completed_by_layers(tables: Mapping[str, Any]) -> tuple[Mapping[str, Any], list[str]]:
@@ -236,54 +231,21 @@ class OutsideTable(Table):
     Its outer elements absorb.
     """
 
-    order: int = quantity(
-        4, unit="1", means="count", help="order of the elements, nodes along a side less one", ge=3, le=6
-    )
-    accuracy: float = quantity(
-        1e-3,
-        unit="1",
-        means="share",
-        help="error of velocities for which the keys left out are chosen",
-        gt=0.0,
-        lt=1.0,
-    )
-    element: float | None = quantity(
-        None, unit="m", means="length", help="largest side of an element; absent: from waves and accuracy", gt=0.0
-    )
-    margin: int | None = quantity(
-        None,
-        unit="1",
-        means="count",
-        help="elements between the particles and those that absorb; absent: 1, more under lasting loads",
-        ge=1,
-        le=MOST_ELEMENTS,
-    )
-    layers: int | None = quantity(
-        None,
-        unit="1",
-        means="count",
-        help="elements that absorb, one behind the other, five wider ones more beside layers; absent: from accuracy",
-        ge=2,
-        le=MOST_ELEMENTS,
-    )
-    reflection: float | None = quantity(
-        None,
-        unit="1",
-        means="share",
-        help="R0, amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10",
-        gt=0.0,
-        lt=1.0,
-    )
-    shift: float = quantity(
-        0.3,
-        unit="1",
-        means="setting",
-        help="α of the layers over c_p/2L, L being the larger side of what lies within them",
-        gt=0.0,
-    )
-    delay: float = quantity(
-        0.1, unit="1", means="setting", help="τ of the layers, in time steps; 0 grows in long runs", ge=0.0
-    )
-    damping: float = quantity(
-        0.1, unit="1", means="setting", help="dashpots of the ties between disks and continuum, over ρ c_p D", ge=0.0
-    )
+    order: int = quantity(4, means="count", ge=3, le=6)
+    """order of the elements, nodes along a side less one"""
+    accuracy: float = quantity(1e-3, means="share", gt=0.0, lt=1.0)
+    """error of velocities for which the keys left out are chosen"""
+    element: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """largest side of an element; absent: from waves and accuracy"""
+    margin: int | None = quantity(None, means="count", ge=1, le=MOST_ELEMENTS)
+    """elements between the particles and those that absorb; absent: 1, more under lasting loads"""
+    layers: int | None = quantity(None, means="count", ge=2, le=MOST_ELEMENTS)
+    """elements that absorb, one behind the other, five wider ones more beside layers; absent: from accuracy"""
+    reflection: float | None = quantity(None, means="share", gt=0.0, lt=1.0)
+    """R0, amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10"""
+    shift: float = quantity(0.3, means="setting", gt=0.0)
+    """α of the layers over c_p/2L, L being the larger side of what lies within them"""
+    delay: float = quantity(0.1, means="setting", ge=0.0)
+    """τ of the layers, in time steps; 0 grows in long runs"""
+    damping: float = quantity(0.1, means="setting", ge=0.0)
+    """dashpots of the ties between disks and continuum, over ρ c_p D"""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator
 
 from dembound.boundaries.edge import normal_axis
 from dembound.casefile.disks.targets import with_history
@@ -30,36 +30,26 @@ class Load(Table):
     stage on.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
-    force: Vector | None = quantity(
-        None,
-        unit="N/m",
-        help="force [fx, fy] on all its particles together; needs position or region",
-    )
-    acceleration: Vector | None = quantity(None, unit="m/s²", help="force [ax, ay] per mass of each particle")
-    position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")
-    region: Box | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="rectangle [x0, y0, x1, y1] of loaded particles, or of the continuum's surface",
-    )
-    pressure: float | None = quantity(
-        None,
-        unit="Pa",
-        means="pressure of a load",
-        help="pressure on the wall of a hole, away from it, or on sides, inwards; negative values pull",
-    )
-    hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
-    sides: tuple[Literal["left", "right", "bottom", "top"], ...] | None = quantity(
-        None, unit="1", help="sides on which a steady pressure acts, as round a sample", min_length=1
-    )
-    on: Literal["outline", "bonds"] = quantity(
-        "outline", unit="1", help="where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"
-    )
-    wave: str | None = quantity(
-        None, unit="1", help="name of the wave that is the time factor; absent: steady, from the static stage on"
-    )
+    name: FileName = quantity()
+    """name of the load in messages and results"""
+    force: Vector | None = quantity(None, unit="N/m")
+    """force [fx, fy] on all its particles together; needs position or region"""
+    acceleration: Vector | None = quantity(None, unit="m/s²")
+    """force [ax, ay] per mass of each particle"""
+    position: Vector | None = quantity(None, unit="m", means="place")
+    """where; the nearest particle is loaded"""
+    region: Box | None = quantity(None, unit="m", means="place")
+    """rectangle [x0, y0, x1, y1] of loaded particles, or of the continuum's surface"""
+    pressure: float | None = quantity(None, unit="Pa", means="pressure of a load")
+    """pressure on the wall of a hole, away from it, or on sides, inwards; negative values pull"""
+    hole: str | None = quantity(None)
+    """name of the hole on whose wall a pressure acts"""
+    sides: tuple[Literal["left", "right", "bottom", "top"], ...] | None = quantity(None, min_length=1)
+    """sides on which a steady pressure acts, as round a sample"""
+    on: Literal["outline", "bonds"] = quantity("outline")
+    """where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"""
+    wave: str | None = quantity(None)
+    """name of the wave that is the time factor; absent: steady, from the static stage on"""
 
     @property
     def key(self) -> str:
@@ -90,12 +80,9 @@ class Load(Table):
         """Whether the load acts on all particles."""
         return self.position is None and self.region is None and self.pressure is None
 
-    @model_validator(mode="after")
-    def _one_action_in_one_place(self) -> "Load":
-        problems = [*self._problems_with_action(), *self._problems_with_place()]
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+    def mistakes(self) -> Iterator[str]:
+        """Not one action, or not in one place."""
+        yield from (*self._problems_with_action(), *self._problems_with_place())
 
     def _problems_with_action(self) -> list[str]:
         """Mistakes in force, acceleration and pressure."""
@@ -111,7 +98,7 @@ class Load(Table):
     def _problems_with_place(self) -> list[str]:
         """Mistakes in position, region and hole."""
         if self.pressure is not None:
-            return [*self._problems_with_hole()]
+            return self._problems_with_hole()
         if stray := [key for key in ("hole", "sides", "on") if key in self.model_fields_set]:
             return [f"{key}: is for a pressure" for key in stray]
         if self.position is not None and self.region is not None:
@@ -193,15 +180,9 @@ class Monitor(Table):
     In a file it may be one of a row, see `monitor_rows.MonitorTable`.
     """
 
-    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
-        ..., unit="1", help="name of the history in the results"
-    )
-    position: tuple[float, float] = quantity(
-        ...,
-        unit="m",
-        means="place",
-        help="where; between equally near particles the lowest is taken, of these the leftmost",
-    )
-    points: tuple[tuple[float, float], ...] | None = quantity(
-        None, unit="m", means="place", help="corners of a polygon, of whose particles the mean is recorded"
-    )
+    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()
+    """name of the history in the results"""
+    position: tuple[float, float] = quantity(unit="m", means="place")
+    """where; between equally near particles the lowest is taken, of these the leftmost"""
+    points: tuple[tuple[float, float], ...] | None = quantity(None, unit="m", means="place")
+    """corners of a polygon, of whose particles the mean is recorded"""

@@ -1,9 +1,9 @@
 """The ``[material]`` table."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from pydantic import create_model, model_validator
+from pydantic import create_model
 
 from dembound.casefile.disks.stiffness import (
     MODULI_KEYS,
@@ -44,190 +44,99 @@ class MaterialTable(Table):
     stress at rest, `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
-    density: float = quantity(
-        ..., unit="kg/m³", help="bulk density: mass over scene area; absent: every [[layer]] has its own", gt=0.0
-    )
-    p_wave_speed: float | None = quantity(
-        None, unit="m/s", means="wave speed", help="P-wave speed from which the moduli follow", gt=0.0
-    )
-    match: Literal["lattice", "assembly"] = quantity(
-        "lattice",
-        unit="1",
-        help='body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
-    )
-    contact_share: float = quantity(
-        0.5,
-        unit="1",
-        means="share",
-        help="share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only",
-        ge=0.0,
-        le=1.0,
-    )
-    s_wave_speed: float | None = quantity(
-        None,
-        unit="m/s",
-        means="wave speed",
-        help="S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own",
-        gt=0.0,
-    )
-    young: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus of the body", gt=0.0)
-    poisson: float | None = quantity(
-        None, unit="1", means="Poisson's ratio", help="Poisson's ratio of the body", gt=-1.0, lt=1.0
-    )
-    bulk: float | None = quantity(None, unit="Pa", means="modulus", help="bulk modulus of the body", gt=0.0)
-    shear: float | None = quantity(None, unit="Pa", means="modulus", help="shear modulus of the body", gt=0.0)
-    plane: Literal["strain", "stress"] = quantity(
-        "strain",
-        unit="1",
-        help='which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample',
-    )
-    along: Literal["isotropic", "x", "y"] = quantity(
-        "isotropic",
-        unit="1",
-        help='direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it',
-    )
-    emod: float | None = quantity(
-        None, unit="Pa", means="modulus", help="modulus E_c of the contacts; 0 in pattern A only", ge=0.0
-    )
-    pb_emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus Ē_c of the parallel bonds", ge=0.0)
-    kratio: float = quantity(
-        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the contacts", gt=0.0
-    )
-    pb_kratio: float = quantity(
-        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the bonds", gt=0.0
-    )
-    fric: float = quantity(
-        0.0,
-        unit="1",
-        means="friction coefficient",
-        help="friction coefficient of the contacts; at 0 they carry no shear",
-        ge=0.0,
-    )
-    rr_fric: float = quantity(
-        0.0,
-        unit="1",
-        means="friction coefficient",
-        help="resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric",
-        ge=0.0,
-    )
-    pb_rmul: float = quantity(
-        1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
-    )
-    damp: float = quantity(
-        0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
-    )
-    dp_nratio: float = quantity(
-        0.0,
-        unit="1",
-        means="share",
-        help="normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)",
-        ge=0.0,
-        le=1.0,
-    )
-    dp_sratio: float = quantity(
-        0.0,
-        unit="1",
-        means="share",
-        help="shear dashpot of closed contacts over the critical one; needs fric",
-        ge=0.0,
-        le=1.0,
-    )
-    dp_on: Literal["unbonded", "all"] | None = quantity(
-        None,
-        unit="1",
-        help='contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break',
-    )
-    quality_factor: float | None = quantity(
-        None,
-        unit="1",
-        means="quality factor",
-        help="quality factor Q of P and S waves, see [damping]; absent: no damping",
-        ge=2.0,
-        le=1e4,
-    )
+    density: float = quantity(unit="kg/m³", gt=0.0)
+    """bulk density: mass over scene area; absent: every [[layer]] has its own"""
+    p_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """P-wave speed from which the moduli follow"""
+    match: Literal["lattice", "assembly"] = quantity("lattice")
+    """body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x"""
+    contact_share: float = quantity(0.5, means="share", ge=0.0, le=1.0)
+    """share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only"""
+    s_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
+    """S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own"""
+    young: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """Young's modulus of the body"""
+    poisson: float | None = quantity(None, means="Poisson's ratio", gt=-1.0, lt=1.0)
+    """Poisson's ratio of the body"""
+    bulk: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """bulk modulus of the body"""
+    shear: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
+    """shear modulus of the body"""
+    plane: Literal["strain", "stress"] = quantity("strain")
+    """which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample"""
+    along: Literal["isotropic", "x", "y"] = quantity("isotropic")
+    """direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it"""
+    emod: float | None = quantity(None, unit="Pa", means="modulus", ge=0.0)
+    """modulus E_c of the contacts; 0 in pattern A only"""
+    pb_emod: float | None = quantity(None, unit="Pa", means="modulus", ge=0.0)
+    """modulus Ē_c of the parallel bonds"""
+    kratio: float = quantity(1.0, means="normal over shear stiffness", gt=0.0)
+    """normal over shear stiffness of the contacts"""
+    pb_kratio: float = quantity(1.0, means="normal over shear stiffness", gt=0.0)
+    """normal over shear stiffness of the bonds"""
+    fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """friction coefficient of the contacts; at 0 they carry no shear"""
+    rr_fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric"""
+    pb_rmul: float = quantity(1.0, means="bond radius", gt=0.0)
+    """bond radius over the smaller disk's radius"""
+    damp: float = quantity(0.0, means="local damping", ge=0.0, lt=1.0)
+    """local damping coefficient; 0 for waves"""
+    dp_nratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
+    """normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)"""
+    dp_sratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
+    """shear dashpot of closed contacts over the critical one; needs fric"""
+    dp_on: Literal["unbonded", "all"] | None = quantity(None)
+    """contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break"""
+    quality_factor: float | None = quantity(None, means="quality factor", ge=2.0, le=1e4)
+    """quality factor Q of P and S waves, see [damping]; absent: no damping"""
     law: LawName = quantity(
-        "elastic",
-        unit="1",
-        help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help),
+        "elastic", help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help)
     )
-    pb_ten: float | None = quantity(
-        None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
-    )
-    pb_coh: float | None = quantity(
-        None,
-        unit="Pa",
-        means="strength",
-        help="cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear",
-        gt=0.0,
-    )
-    pb_fa: float = quantity(
-        0.0, unit="degrees", means="friction angle", help="friction angle of the bonds; needs pb_coh", ge=0.0, lt=90.0
-    )
-    pb_mcf: float = quantity(
-        1.0,
-        unit="1",
-        means="share",
-        help="share of the moment that counts in the stress of bonds (PFC's moment contribution factor)",
-        ge=0.0,
-        le=1.0,
-    )
-    pb_scatter: Scatter | None = quantity(
-        None,
-        unit="1",
-        help="scatter of both strengths from bond to bond, a table; absent: none",
-    )
-    locked_in: float | None = quantity(
-        None,
-        unit="Pa",
-        means="stress",
-        help="pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch",
-        gt=0.0,
-    )
-    geometry: Literal["updated", "reference"] = quantity(
-        "updated",
-        unit="1",
-        help='"updated": normals and arms follow the motion; "reference": intact bonds keep those of the start',
-    )
-    elastic_start: bool = quantity(
-        True,
-        unit="1",
-        help="whether the faster elastic law serves until a contact opens, slips or closes or a bond yields",
-    )
+    pb_ten: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """tensile strength of the bonds; absent: unbreakable in tension"""
+    pb_coh: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
+    """cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear"""
+    pb_fa: float = quantity(0.0, unit="degrees", means="friction angle", ge=0.0, lt=90.0)
+    """friction angle of the bonds; needs pb_coh"""
+    pb_mcf: float = quantity(1.0, means="share", ge=0.0, le=1.0)
+    """share of the moment that counts in the stress of bonds (PFC's moment contribution factor)"""
+    pb_scatter: Scatter | None = quantity(None)
+    """scatter of both strengths from bond to bond, a table; absent: none"""
+    locked_in: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
+    """pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch"""
+    geometry: Literal["updated", "reference"] = quantity("updated")
+    """ "updated": normals and arms follow the motion; "reference": intact bonds keep those of the start"""
+    elastic_start: bool = quantity(True)
+    """whether the faster elastic law serves until a contact opens, slips or closes or a bond yields"""
 
-    @model_validator(mode="after")
-    def _consistent(self) -> "MaterialTable":
+    def mistakes(self) -> Iterator[str]:
+        """Keys that the law has no use for, contradict each other, or lack others."""
         law = LAWS[self.law]
-        problems = [*keys_problems(self, self.law, (*STIFFNESS_KEYS, *RATIO_KEYS, *WAVE_SPEED_KEYS, *TARGET_KEYS))]
+        yield from keys_problems(self, self.law, (*STIFFNESS_KEYS, *RATIO_KEYS, *WAVE_SPEED_KEYS, *TARGET_KEYS))
         if law.uses is not None:
-            problems += self._problems_with_dashpots() if self.has_dashpots else []
-            return self._without(problems)
-        if len(self.pair) > 0:
-            problems += problems_with_target(self)
+            yield from self._problems_with_dashpots()
+            return
+        if self.pair:
+            yield from problems_with_target(self)
         else:
-            problems += problems_with_moduli(self) if self.p_wave_speed is None else problems_with_speed(self)
-            problems += [
-                f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
-                for key in TARGET_KEYS
-                if key in self.model_fields_set
-            ]
-        problems += self._problems_with_strength()
-        if not law.has_history:
-            problems += self._problems_without_history()
-        if self.has_dashpots:
-            problems += self._problems_with_dashpots()
-        elif self.dp_on is not None:
-            problems.append("dp_on: is of dashpots of contacts, but there are none; give dp_nratio")
+            yield from problems_with_moduli(self) if self.p_wave_speed is None else problems_with_speed(self)
+            for key in self._given(TARGET_KEYS):
+                yield f"{key}: is only allowed together with targets: young and poisson, or both wave speeds"
+        yield from self._problems_with_strength()
+        for key in () if law.has_history else self._given(HISTORY_KEYS):
+            yield f"{key}: is only allowed with law = {with_history()}"
+        if self.dp_on is not None and not self.has_dashpots:
+            yield "dp_on: is of dashpots of contacts, but there are none; give dp_nratio"
+        yield from self._problems_with_dashpots()
         if self.rr_fric > 0.0:
-            problems += self._problems_with_rolling()
+            yield from self._problems_with_rolling()
         if self.quality_factor is not None:
-            problems += self._problems_with_quality()
-        return self._without(problems)
+            yield from self._problems_with_quality()
 
-    def _without(self, problems: list[str]) -> "MaterialTable":
-        """The table; raises ValueError with the problems, if there are any."""
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+    def _given(self, keys: Sequence[str]) -> list[str]:
+        """The keys that the file gives, of those asked for, in their order."""
+        return [key for key in keys if key in self.model_fields_set]
 
     def valued(self, keys: Sequence[str]) -> list[str]:
         """The keys that have a value, of those asked for, in their order."""
@@ -277,63 +186,60 @@ class MaterialTable(Table):
         """Whether dashpots of contacts also act beside intact bonds, if no layer's bonds have a strength."""
         return self.dp_on == "all" or (self.dp_on is None and not self.valued(STRENGTH_KEYS))
 
-    def _problems_with_dashpots(self) -> list[str]:
+    @property
+    def _asks_for_elastic_start(self) -> bool:
+        """Whether the file says that the elastic law is to serve first."""
+        return self.elastic_start and "elastic_start" in self.model_fields_set
+
+    @property
+    def _no_contacts(self) -> str:
+        """The key that leaves contacts no stiffness, with its value; empty with a stiffness."""
+        return "emod = 0" if self.emod == 0.0 else "contact_share = 0" if self.contact_share == 0.0 else ""
+
+    def _problems_with_dashpots(self) -> Iterator[str]:
         """What dashpots of contacts do not go with."""
-        problems = []
         given = [key for key in DASHPOT_KEYS if getattr(self, key) > 0.0]
         at_once = self.damps_bonds or self.no_bonds is not None
-        if at_once and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append(f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out")
-        if self.emod == 0.0 or self.contact_share == 0.0:
-            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
-            problems += [f"{key}: is of contacts, but {none} leaves them no stiffness" for key in given]
+        if given and at_once and self._asks_for_elastic_start:
+            yield f"elastic_start: is true, but dashpots ({given[0]}) act from the start; leave it out"
+        if self._no_contacts:
+            yield from (f"{key}: is of contacts, but {self._no_contacts} leaves them no stiffness" for key in given)
         elif self.dp_sratio > 0.0 and self.fric == 0.0:
-            problems.append("dp_sratio: is of the shear of contacts, but fric = 0 leaves them none")
-        return problems
+            yield "dp_sratio: is of the shear of contacts, but fric = 0 leaves them none"
 
-    def _problems_with_rolling(self) -> list[str]:
+    def _problems_with_rolling(self) -> Iterator[str]:
         """What resistance to rolling does not go with."""
-        problems = []
         if self.fric == 0.0:
-            problems.append(f"{ROLLING_KEY}: is of contacts with a shear stiffness, but fric = 0 leaves them none")
-        if self.emod == 0.0 or self.contact_share == 0.0:
-            none = "emod = 0" if self.emod == 0.0 else "contact_share = 0"
-            problems.append(f"{ROLLING_KEY}: is of contacts, but {none} leaves them no stiffness")
-        if self.rolls and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append(f"elastic_start: is true, but contacts resist rolling ({ROLLING_KEY}) from the start")
-        return problems
+            yield f"{ROLLING_KEY}: is of contacts with a shear stiffness, but fric = 0 leaves them none"
+        if self._no_contacts:
+            yield f"{ROLLING_KEY}: is of contacts, but {self._no_contacts} leaves them no stiffness"
+        if self.rolls and self._asks_for_elastic_start:
+            yield f"elastic_start: is true, but contacts resist rolling ({ROLLING_KEY}) from the start"
 
-    def _problems_without_history(self) -> list[str]:
-        """Keys that have no effect unless the law depends on history."""
-        given = [key for key in HISTORY_KEYS if key in self.model_fields_set]
-        return [f"{key}: is only allowed with law = {with_history()}" for key in given]
-
-    def _problems_with_quality(self) -> list[str]:
+    def _problems_with_quality(self) -> Iterator[str]:
         """What damping by a quality factor does not go with."""
-        problems, law = [], LAWS[self.law]
+        law = LAWS[self.law]
         if law.has_history and not law.relaxes:
-            problems.append(f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"')
+            yield f'quality_factor: is not known for law = "{self.law}"; give law = "elastic"'
         if law.has_history and (none := self.no_bonds):
-            problems.append(f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none')
-        if law.has_history and self.elastic_start and "elastic_start" in self.model_fields_set:
-            problems.append("elastic_start: is true, but quality_factor damps bonds from the start; leave it out")
+            yield f'quality_factor: is of bonds under law = "{self.law}", but {none} leaves none'
+        if law.has_history and self._asks_for_elastic_start:
+            yield "elastic_start: is true, but quality_factor damps bonds from the start; leave it out"
         if self.damp > 0.0:
-            problems.append("quality_factor: is not allowed together with damp, local damping; leave damp out")
-        return problems
+            yield "quality_factor: is not allowed together with damp, local damping; leave damp out"
 
-    def _problems_with_strength(self) -> list[str]:
+    def _problems_with_strength(self) -> Iterator[str]:
         """Mistakes in the strength of the bonds."""
-        problems = []
         if "pb_fa" in self.model_fields_set and self.pb_coh is None:
-            problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+            yield "pb_fa: is only allowed together with pb_coh, the strength it adds to"
         if self.pb_scatter is not None and self.pb_ten is None and self.pb_coh is None:
-            problems.append("pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh")
+            yield "pb_scatter: is of the strengths of bonds, but there are none; give pb_ten or pb_coh"
         if "pb_mcf" in self.model_fields_set and self.pb_ten is None:
-            problems.append("pb_mcf: is of the stress that pb_ten limits; give pb_ten")
+            yield "pb_mcf: is of the stress that pb_ten limits; give pb_ten"
         if none := self.no_bonds:
-            strengths = self.valued(STRENGTH_KEYS)
-            problems += [f"{key}: is the strength of bonds, but {none} leaves none" for key in strengths]
-        return problems
+            yield from (
+                f"{key}: is the strength of bonds, but {none} leaves none" for key in self.valued(STRENGTH_KEYS)
+            )
 
     @property
     def no_bonds(self) -> str | None:

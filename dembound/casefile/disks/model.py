@@ -29,21 +29,18 @@ from dembound.table import Box, Table, quantity
 class Reduce(Table):
     """Parts of a scene that are not stepped, as their motion follows from that of other parts."""
 
-    rows: bool = quantity(True, unit="1", help="whether rows of disks that move identically are stepped as one")
-    settled: bool = quantity(
-        False, unit="1", help="whether the elastic law serves again after a static stage if nothing is open or slides"
-    )
+    rows: bool = quantity(True)
+    """whether rows of disks that move identically are stepped as one"""
+    settled: bool = quantity(False)
+    """whether the elastic law serves again after a static stage if nothing is open or slides"""
 
 
 class DiskRun(Run):
     """The simulated time and the time step of disks, and what becomes of disks that have fallen far below the scene."""
 
-    far: Literal["keep", "retire"] = quantity(
-        "keep",
-        unit="1",
-        help="disks that touch nothing and have fallen below the base by more than the height of "
-        'the scene: "keep", they fall on; "retire", they stop there, and their energy counts as damping',
-    )
+    far: Literal["keep", "retire"] = quantity("keep")
+    """disks that touch nothing and have fallen below the base by more than the height of the scene: "keep", they fall
+    on; "retire", they stop there, and their energy counts as damping"""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

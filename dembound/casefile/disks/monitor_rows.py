@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, model_validator
+from pydantic import AfterValidator
 
 from dembound.boundaries.free import Free
 from dembound.casefile.disks.ground import Ground, reach
@@ -14,7 +14,7 @@ from dembound.casefile.disks.load import Monitor, is_no_twin
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import MOST_MONITORS
 from dembound.holes.hole import Hole, surface_below
-from dembound.holes.polygon import Points
+from dembound.holes.shapes import Points
 from dembound.packings.base import TYPED, Packing
 from dembound.table import FileName, Table, quantity
 
@@ -38,56 +38,38 @@ class MonitorTable(Table):
     Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
     """
 
-    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
-        ..., unit="1", help="name of the history in the results; of a row without the numbers"
-    )
-    position: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="where; between equally near particles the lowest is taken, of these the leftmost",
-    )
-    points: Points | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; "
-        "instead of position",
-    )
-    along: Literal["surface"] | None = quantity(
-        None, unit="1", help='"surface": a row along the free surface of the ground, instead of position'
-    )
-    spacing: float | None = quantity(
-        None, unit="m", means="length", help="step along x from one monitor of a row to the next", gt=0.0
-    )
-    from_: float | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        alias="from",
-        help="x of the first; absent: half a step from the left side of the ground",
-    )
-    to: float | None = quantity(
-        None, unit="m", means="place", help="largest x of a row; absent: half a step from its right side"
-    )
+    name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()
+    """name of the history in the results; of a row without the numbers"""
+    position: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """where; between equally near particles the lowest is taken, of these the leftmost"""
+    points: Points | None = quantity(None, unit="m", means="place")
+    """corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; instead of position"""
+    along: Literal["surface"] | None = quantity(None)
+    """ "surface": a row along the free surface of the ground, instead of position"""
+    spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
+    """step along x from one monitor of a row to the next"""
+    from_: float | None = quantity(None, unit="m", means="place", alias="from")
+    """x of the first; absent: half a step from the left side of the ground"""
+    to: float | None = quantity(None, unit="m", means="place")
+    """largest x of a row; absent: half a step from its right side"""
 
-    @model_validator(mode="after")
-    def _place_or_row(self) -> "MonitorTable":
+    def mistakes(self) -> Iterator[str]:
+        """Not one of a place, a polygon and a row, or keys of another of these."""
         of_rows = [key for key in ("spacing", "from_", "to") if getattr(self, key) is not None]
-        problems = []
         if self.points is not None:
             stray = [key for key in ("position", "along", *of_rows) if getattr(self, key) is not None]
-            problems += [f"{self.key_of(key)}: is not allowed together with points" for key in stray]
-            problems += ["points: must be three or more"] if len(self.points) < 3 else []
+            yield from (f"{self.key_of(key)}: is not allowed together with points" for key in stray)
+            if len(self.points) < 3:
+                yield "points: must be three or more"
         elif self.along is None:
-            problems += ["position: is missing; give it, along or points"] if self.position is None else []
-            problems += [f"{self.key_of(key)}: is for a row; give along, too" for key in of_rows]
+            if self.position is None:
+                yield "position: is missing; give it, along or points"
+            yield from (f"{self.key_of(key)}: is for a row; give along, too" for key in of_rows)
         else:
-            problems += ["position: is not allowed together with along"] if self.position is not None else []
-            problems += ["spacing: is missing; a row needs it"] if self.spacing is None else []
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+            if self.position is not None:
+                yield "position: is not allowed together with along"
+            if self.spacing is None:
+                yield "spacing: is missing; a row needs it"
 
     def steps(self, left: float, right: float) -> tuple[float, int]:
         """First x (m) of a row in ground from one x (m) to another one, and the number of monitors, 0 or less for none.

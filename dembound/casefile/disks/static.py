@@ -37,43 +37,21 @@ class Static(Table):
     and outside sides, contacts begin with the forces of that stress; otherwise forces on the sides make it.
     """
 
-    stress: tuple[float, float, float] | None = quantity(
-        None,
-        unit="Pa",
-        means="stress to reach",
-        help="stress [sxx, syy, sxy] to reach, tension positive; absent: that of the loads",
-    )
-    k0: float | None = quantity(
-        None,
-        unit="1",
-        means="ratio of stresses",
-        help="stress along x over that along y due to weight; absent: what settling makes",
-        ge=0.0,
-        le=5.0,
-    )
-    ratio: float | None = quantity(
-        None,
-        unit="1",
-        means="rest",
-        help="mean unbalanced over mean contact force at its end; absent: "
-        "1e-5, and 1e-7 once contacts slide or open or bonds break",
-        gt=0.0,
-        lt=1.0,
-    )
-    damp: float = quantity(0.7, unit="1", means="share", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
-    max_steps: int = quantity(
-        200_000, unit="1", means="count", help="steps after which the stage has failed", ge=1, le=MOST_STEPS
-    )
-    from_: str | None = quantity(
-        None,
-        unit="1",
-        help="folder of the results of a case that has settled the same body, from the current folder; absent: none",
-        alias="from",
-        min_length=1,
-    )
-    boundary: Mapping[str, StaticSide] = quantity(
-        {}, unit="1", help="a table for each side during the stage; an absent side is free"
-    )
+    stress: tuple[float, float, float] | None = quantity(None, unit="Pa", means="stress to reach")
+    """stress [sxx, syy, sxy] to reach, tension positive; absent: that of the loads"""
+    k0: float | None = quantity(None, means="ratio of stresses", ge=0.0, le=5.0)
+    """stress along x over that along y due to weight; absent: what settling makes"""
+    ratio: float | None = quantity(None, means="rest", gt=0.0, lt=1.0)
+    """mean unbalanced over mean contact force at its end; absent: 1e-5, and 1e-7 once contacts slide or open or bonds
+    break"""
+    damp: float = quantity(0.7, means="share", gt=0.0, lt=1.0)
+    """local damping coefficient of the stage"""
+    max_steps: int = quantity(200_000, means="count", ge=1, le=MOST_STEPS)
+    """steps after which the stage has failed"""
+    from_: str | None = quantity(None, alias="from", min_length=1)
+    """folder of the results of a case that has settled the same body, from the current folder; absent: none"""
+    boundary: Mapping[str, StaticSide] = quantity({})
+    """a table for each side during the stage; an absent side is free"""
 
     def enough(self, *, slides: bool) -> float:
         """The force ratio at which the stage is over; slides : whether under a history-dependent law."""

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.boundaries.boundary import Boundary
-from dembound.casefile.messages import counted
-from dembound.holes.polygon import Points, Polygon
+from dembound.holes.shapes import Points, Polygon
 from dembound.packings.base import TYPED, Packing
 from dembound.table import Box
 from dembound.waves.file_wave import columns_in, header_of, read_text
@@ -67,29 +66,22 @@ def _height(points: Points, x: float) -> float:
     return points[0][1] if x < points[0][0] else points[-1][1]
 
 
-def require_surface(points: Points) -> None:
-    """Raise ValueError for points that are no surface from left to right."""
-    if len(points) < 2:
-        raise ValueError(f"surface: has {counted(len(points), 'point')}, must have at least two")
-    if any(after < before for (before, _), (after, _) in pairwise(points)):
-        raise ValueError("surface: must go from left to right, so that no x is less than the one before")
-
-
-def points_in_file(name: str, context: Mapping[str, Any]) -> tuple[Points, str]:
+def points_in_file(name: str, context: Mapping[str, Any], key: str = "surface") -> tuple[Points, str]:
     """The points (m) in a text file, and its text.
 
-    context : as for `FileWave`. Raises ValueError for a file without two columns of numbers, or with other units.
+    context : as for `FileWave`. key : whose value is the name of the file. Raises ValueError for a file without two
+    columns of numbers, or with other units.
     """
     path, given = context.get("folder", Path()) / name, context.get("files", {}).get(name)
     try:
         text = read_text(path) if given is None else given
         rows = columns_in(text, path)
     except ValueError as error:
-        raise ValueError(str(error).replace("path:", "surface:", 1)) from None
+        raise ValueError(str(error).replace("path:", f"{key}:", 1)) from None
     if rows.shape[1] != 2:
-        raise ValueError(f'surface: "{path}" has {rows.shape[1]} columns, must have two, x and y in m')
+        raise ValueError(f'{key}: "{path}" has {rows.shape[1]} columns, must have two, x and y in m')
     if other := OTHER_UNIT.search(header_of(text)):
-        raise ValueError(f'surface: the header of "{path}" names "{other[0]}", must be in m')
+        raise ValueError(f'{key}: the header of "{path}" names "{other[0]}", must be in m')
     return tuple((float(x), float(y)) for x, y in rows.tolist()), text
 
 

@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
-from pydantic import model_validator
-
 from dembound.casefile.types import LAWS
 from dembound.table import LARGEST_WHOLE, Table, quantity
 
@@ -19,14 +17,14 @@ class Scatter(Table):
     follows from `packing.seed` and its place in the packing.
     """
 
-    type: Literal["normal", "weibull"] = quantity(..., unit="1", help="distribution of the factors")
-    deviation: float | None = quantity(
-        None, unit="1", means="share", help='standard deviation of "normal" before it is cut off', gt=0.0, le=1.0
-    )
-    shape: float | None = quantity(
-        None, unit="1", means="setting", help='shape (Weibull modulus) of "weibull"', ge=1.0, le=1e3
-    )
-    seed: int = quantity(0, unit="1", means="count", help="other strengths of the same disks", ge=0, le=LARGEST_WHOLE)
+    type: Literal["normal", "weibull"] = quantity()
+    """distribution of the factors"""
+    deviation: float | None = quantity(None, means="share", gt=0.0, le=1.0)
+    """standard deviation of "normal" before it is cut off"""
+    shape: float | None = quantity(None, means="setting", ge=1.0, le=1e3)
+    """shape (Weibull modulus) of "weibull" """
+    seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
+    """other strengths of the same disks"""
 
     @property
     def in_words(self) -> str:
@@ -34,16 +32,14 @@ class Scatter(Table):
         width = {"normal": "± {:g}", "weibull": "modulus {:g}"}[self.type].format(getattr(self, KEY_OF[self.type]))
         return f"{self.type} {width}"
 
-    @model_validator(mode="after")
-    def _one_width(self) -> "Scatter":
+    def mistakes(self) -> Iterator[str]:
+        """A width that is missing, or is that of the other distribution."""
         needed = KEY_OF[self.type]
-        problems = [] if getattr(self, needed) is not None else [f'{needed}: is missing; type = "{self.type}" needs it']
+        if getattr(self, needed) is None:
+            yield f'{needed}: is missing; type = "{self.type}" needs it'
         for key in KEY_OF.values():
             if key != needed and getattr(self, key) is not None:
-                problems.append(f'{key}: is not allowed with type = "{self.type}"; give {needed}')
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
+                yield f'{key}: is not allowed with type = "{self.type}"; give {needed}'
 
 
 PAIRS = (("young", "poisson"), ("bulk", "shear"), ("p_wave_speed", "s_wave_speed"))

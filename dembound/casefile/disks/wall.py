@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any, Literal
 
-from pydantic import PrivateAttr, ValidationInfo, model_validator
+from pydantic import PrivateAttr
 
 from dembound.casefile.disks.surface import points_in_file
 from dembound.casefile.disks.targets import with_history
 from dembound.casefile.messages import counted, numbered
 from dembound.casefile.types import LAWS
-from dembound.holes.polygon import Points
+from dembound.holes.shapes import Points
 from dembound.table import FileName, Table, quantity
 from dembound.waves import Wave
 
@@ -32,77 +32,45 @@ class Wall(Table):
     Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the wall in messages and results")
-    points: Points | str = quantity(
-        ...,
-        unit="m",
-        means="place",
-        help="points [[x, y], …] joined by straight lines, or a text file of x and y in m, relative to the folder of "
-        "the case; the first point again at the end closes it",
-    )
-    fric: float = quantity(
-        0.0, unit="1", means="friction coefficient", help="friction coefficient between disks and wall", ge=0.0
-    )
-    rr_fric: float = quantity(
-        0.0,
-        unit="1",
-        means="friction coefficient",
-        help="resistance to rolling: the moment is at most this times R N of a disk; needs fric > 0",
-        ge=0.0,
-    )
-    kn: float | None = quantity(
-        None,
-        unit="N/m",
-        help="normal stiffness of a contact; absent: 2·emod of the material, that of the disk alone",
-        gt=0.0,
-    )
-    ks: float | None = quantity(
-        None, unit="N/m", help="shear stiffness of a contact; absent: kn over the material's kratio", gt=0.0
-    )
-    dp_nratio: float = quantity(
-        0.0,
-        unit="1",
-        means="share",
-        help="normal dashpot of a contact over the critical one, of the disk's mass; it does not pull",
-        ge=0.0,
-        le=1.0,
-    )
-    velocity: Velocity | None = quantity(None, unit="m/s", means="velocity", help="constant velocity [vx, vy]")
-    wave_x: str | None = quantity(None, unit="1", help="name of the wave of its velocity along x")
-    wave_y: str | None = quantity(None, unit="1", help="name of the wave of its velocity along y")
-    moves: Literal["incident"] | None = quantity(
-        None,
-        unit="1",
-        help='"incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`',
-    )
-    at: tuple[float, float] | None = quantity(
-        None,
-        unit="m",
-        means="place",
-        help="place in the ground whose motion it has; absent: the middle of its box",
-    )
-    until: float | None = quantity(
-        None, unit="s", help="time at which it stops; absent: it moves to the end of the run", gt=0.0
-    )
+    name: FileName = quantity()
+    """name of the wall in messages and results"""
+    points: Points | str = quantity(unit="m", means="place")
+    """points [[x, y], …] joined by straight lines, or a text file of x and y in m, relative to the folder of the case;
+    the first point again at the end closes it"""
+    fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """friction coefficient between disks and wall"""
+    rr_fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
+    """resistance to rolling: the moment is at most this times R N of a disk; needs fric > 0"""
+    kn: float | None = quantity(None, unit="N/m", gt=0.0)
+    """normal stiffness of a contact; absent: 2·emod of the material, that of the disk alone"""
+    ks: float | None = quantity(None, unit="N/m", gt=0.0)
+    """shear stiffness of a contact; absent: kn over the material's kratio"""
+    dp_nratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
+    """normal dashpot of a contact over the critical one, of the disk's mass; it does not pull"""
+    velocity: Velocity | None = quantity(None, unit="m/s", means="velocity")
+    """constant velocity [vx, vy]"""
+    wave_x: str | None = quantity(None)
+    """name of the wave of its velocity along x"""
+    wave_y: str | None = quantity(None)
+    """name of the wave of its velocity along y"""
+    moves: Literal["incident"] | None = quantity(None)
+    """ "incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`"""
+    at: tuple[float, float] | None = quantity(None, unit="m", means="place")
+    """place in the ground whose motion it has; absent: the middle of its box"""
+    until: float | None = quantity(None, unit="s", gt=0.0)
+    """time at which it stops; absent: it moves to the end of the run"""
 
     _line: Points = PrivateAttr(default=())
     _text: str = PrivateAttr(default="")
 
-    @model_validator(mode="after")
-    def _is_a_line(self, info: ValidationInfo) -> "Wall":
+    def model_post_init(self, context: Mapping[str, Any] | None) -> None:
+        """Reads its points, if they are in a file."""
         if isinstance(self.points, str):
-            try:
-                self._line, self._text = points_in_file(self.points, info.context or {})
-            except ValueError as error:
-                raise ValueError(str(error).replace("surface:", "points:", 1)) from None
+            self._line, self._text = points_in_file(self.points, context or {}, "points")
         else:
             self._line = self.points
-        problems = list(self._problems())
-        if problems:
-            raise ValueError("\n".join(problems))
-        return self
 
-    def _problems(self) -> Iterator[str]:
+    def mistakes(self) -> Iterator[str]:
         """Mistakes in the points and the motion."""
         if not 2 <= len(self._line) <= MOST_POINTS:
             yield f"points: has {counted(len(self._line), 'point')}, must have 2 to {MOST_POINTS:,}"

@@ -70,13 +70,11 @@ def _wave_facts(scene: DiskScene) -> Entries:
     """For each wave in use its shortest wavelength, up to which frequency disks carry it, and its joined samples."""
     carried = highest_carried(scene)
     for name, count in particles_per_wavelength(scene).items():
-        few = f"{particles_per(count)} shortest wavelength"
-        highest, joined = scene.case.wave[name].highest_frequency(), scene.case.wave[name].joined()
+        highest = scene.case.wave[name].highest_frequency()
         at = f", at {with_unit(highest, 'Hz')}" if math.isfinite(highest) else ""
-        parts = [f"{few}{at}"]
-        if math.isfinite(carried):
-            parts.append(f"disks carry waves up to {with_unit(carried, 'Hz')}")
-        yield f"wave {name}", "; ".join([*parts, *([joined] if joined else [])])
+        up_to = f"disks carry waves up to {with_unit(carried, 'Hz')}" if math.isfinite(carried) else ""
+        parts = f"{particles_per(count)} shortest wavelength{at}", up_to, scene.case.wave[name].joined()
+        yield f"wave {name}", "; ".join(filter(None, parts))
 
 
 def _monitor_facts(scene: DiskScene) -> Entries:
@@ -238,12 +236,10 @@ def intact_facts(scene: DiskScene) -> Entries:
     """Where the zones lie in which bonds do not break, and the springs of sides on relative motion."""
     zones = scene.intact_zones
     if zones:
-        depths: dict[int, list[str]] = {scene.case.intact[side]: [] for side in zones}
+        depths: dict[int, list[str]] = {}
         for side in zones:
-            depths[scene.case.intact[side]].append(side)
-        parts = [
-            f"{depth} {'disk' if depth == 1 else 'disks'} from {' and '.join(sides)}" for depth, sides in depths.items()
-        ]
+            depths.setdefault(scene.case.intact[side], []).append(side)
+        parts = [f"{counted(depth, 'disk')} from {' and '.join(sides)}" for depth, sides in depths.items()]
         inside = len(np.unique(np.concatenate(list(zones.values()))))
         count = scene.disk_count - scene.column_count
         column = "; all of the free-field column" if any(side in scene.case.column_sides for side in zones) else ""

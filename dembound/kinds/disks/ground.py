@@ -11,7 +11,7 @@ from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.messages import counted
 from dembound.damping import Mechanisms, Rayleigh
 from dembound.disks.loose import reserve
-from dembound.disks.material.layered import Joint, LayeredGround
+from dembound.disks.material.layered import LayeredGround
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.disks.material.unlike import UnlikeGround
 from dembound.disks.scene import DiskScene
@@ -25,6 +25,9 @@ FOUND_DIGITS = 5
 MICRONS = 6
 """Digits of heights in m."""
 
+MODULI = ("emod", "pb_emod", "kratio", "pb_kratio")
+"""Micro-parameters that give the stiffness."""
+
 STIFFNESS = {"C11": (0, 0), "C22": (1, 1), "C12": (0, 1), "C66": (3, 3)}
 """Printed moduli, and their places in the stiffness of a ground."""
 
@@ -36,7 +39,7 @@ def packing_quantities(scene: DiskScene) -> list[Quantity]:
     """
     ground, brick, tensor = scene.ground, scene.ground.brick, scene.ground.material_tensor
     p_speed, s_speed = speeds_along(ground, 0)
-    moduli = {name: getattr(ground.moduli, name) for name in ("emod", "pb_emod", "kratio", "pb_kratio")}
+    moduli = {name: getattr(ground.moduli, name) for name in MODULI}
     return [
         Quantity("disks_per_brick", "1", len(brick.radii), counted(len(brick.radii), "disk")),
         *brick_quantities(brick),
@@ -88,22 +91,17 @@ def _layers_of(case: DiskCase, ground: LayeredGround) -> list[dict[str, Any]]:
                 "top": heights[number],
                 "bottom": heights[number + 1],
                 "density": material.density,
-                "emod": material.moduli.emod,
-                "pb_emod": material.moduli.pb_emod,
-                "kratio": material.moduli.kratio,
-                "pb_kratio": material.moduli.pb_kratio,
+                **{key: getattr(material.moduli, key) for key in MODULI},
                 "p_wave_speed": p_speed,
                 "s_wave_speed": s_speed,
-                "joint": None if joint is None else _describe_joint(joint),
+                "joint": joint
+                and {
+                    key: None if np.isnan(at) else at
+                    for key, at in (("mass", joint.mass), ("p", joint.p), ("s", joint.s))
+                },
             }
         )
     return found
-
-
-def _describe_joint(joint: Joint) -> dict[str, float | None]:
-    """The effective heights of a joint, see `describe_layers`."""
-    heights = {"mass": joint.mass, "p": joint.p, "s": joint.s}
-    return {name: None if np.isnan(height) else height for name, height in heights.items()}
 
 
 def ground_facts(scene: DiskScene) -> Entries:
@@ -277,10 +275,7 @@ def _quality_facts(name: str, found: Mechanisms, *, relaxes: bool) -> Entries:
         f"speeds hold at {with_unit(found.frequency, 'Hz')}",
     )
     step = "" if name else f": the step is {found.unrelaxed**-0.5:.3g} times as long"  # in layers the stiffest does
-    yield (
-        f"unrelaxed stiffness{name}",
-        f"{found.unrelaxed:.4g} times that of the wave speeds{step}",
-    )
+    yield (f"unrelaxed stiffness{name}", f"{found.unrelaxed:.4g} times that of the wave speeds{step}")
     if relaxes:
         yield (
             f"stiffness at rest{name}",

@@ -1,4 +1,6 @@
-"""Facts about groups and holes, and about supports that let go at a time of the run."""
+"""Facts about groups and holes, and supports that let go in the run; a warning about groups beside a free field."""
+
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -25,6 +27,26 @@ def _keys(group: Group) -> list[str]:
         f"{key} {value if isinstance(value, str) else with_unit(value, unit) if unit == 'Pa' else f'{value:g}'}"
         for (key, value), unit in zip(group.own.items(), units.values(), strict=True)
     ]
+
+
+def group_warnings(scene: DiskScene) -> Iterator[str]:
+    """Friction that reaches a free-field side of ground without bonds, whose column slides by that of the ground."""
+    case = scene.case
+    if not scene.has_history or all(material.no_bonds is None for material in case.materials):
+        return
+    for group in case.group:
+        given = {key: group.own[key] for key in ("fric", "rr_fric") if key in group.own}
+        own = [key for key, value in given.items() if any(getattr(each, key) != value for each in case.materials)]
+        reached = [
+            f"boundary.{side}"
+            for side in case.free_field_sides
+            if group.has(scene.edges[side].positions, case.packing.span).any()
+        ]
+        if own and reached:
+            yield (
+                f"group.{group.name}.{own[0]}: reaches {' and '.join(reached)}, beyond which the free-field column "
+                "slides by the friction of ground without groups; let it end before, or give a [[layer]] its friction"
+            )
 
 
 def hole_facts(case: DiskCase) -> Entries:

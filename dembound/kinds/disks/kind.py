@@ -38,6 +38,7 @@ from dembound.kinds.disks.summary import (
     asked_stress,
     describe_static,
     disk_outcome,
+    stage_numbers,
     summarise_disks,
     warnings_after_disks,
 )
@@ -245,17 +246,5 @@ def _stages(scene: DiskScene, settled: Settled) -> Iterator[Stage]:
     if settled.before is not None and scene.kept is not None:
         before, kept = settled.before, scene.kept
         displacement = before.start.displacement[:, kept]
-        yield Stage("static/before", _facts(before), displacement, before.cracks.among(kept))
-    yield Stage("static", _facts(settled), settled.start.displacement, settled.cracks)
-
-
-def _facts(settled: Settled) -> dict[str, Any]:
-    """Numbers of a static stage for the record."""
-    return {
-        "steps": settled.steps,
-        "ratio": settled.ratio,
-        "mean_reaction": settled.mean_reaction,
-        "mean_residual": settled.mean_residual,
-        "stress": settled.stress,
-        "cracks": len(settled.cracks),
-    }
+        yield Stage("static/before", stage_numbers(before), displacement, before.cracks.among(kept))
+    yield Stage("static", stage_numbers(settled), settled.start.displacement, settled.cracks)

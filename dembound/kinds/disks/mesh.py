@@ -101,20 +101,26 @@ def places_of(particles: Arrays, snapshot: Arrays) -> np.ndarray:
 
 def contact_mesh(particles: Arrays, snapshot: Arrays) -> meshio.Mesh:
     """The contacts of one snapshot as lines with the cell data of this module's table."""
-    import meshio  # imported here, as commands that write no files need not wait for it
-
     pairs = snapshot["contacts/particles"]
     begin = places_of(particles, snapshot)[pairs[:, 0]]
-    end = begin + in_space(snapshot["contacts/vector"])
+    ends = np.stack([begin, begin + in_space(snapshot["contacts/vector"])], axis=1)
     data = {
         "normalForce": snapshot["contacts/normal_force"],
         "shearForce": snapshot["contacts/shear_force"],
         "bonded": snapshot["contacts/bonded"],
         "particles": pairs,
     }
-    lines = np.arange(2 * len(pairs), dtype=np.int32).reshape(-1, 2)
-    points = np.stack([begin, end], axis=1).reshape(-1, 3)
-    return meshio.Mesh(points, [("line", lines)], cell_data={name: [values] for name, values in shown(data).items()})
+    return _segments(ends, data)
+
+
+def _segments(ends: np.ndarray, data: Arrays) -> meshio.Mesh:
+    """Lines between ends (k, 2, 3) or (2k, 3) m, two each, with their cell data."""
+    import meshio  # imported here, as commands that write no files need not wait for it
+
+    points = ends.reshape(-1, 3)
+    lines = np.arange(len(points), dtype=np.int32).reshape(-1, 2)
+    cells = {name: [values] for name, values in shown(data).items()}
+    return meshio.Mesh(points, [("line", lines)], cell_data=cells)
 
 
 def wall_mesh(snapshot: Arrays) -> meshio.Mesh:
@@ -131,15 +137,10 @@ def wall_mesh(snapshot: Arrays) -> meshio.Mesh:
 
 def joint_mesh(snapshot: Arrays) -> meshio.Mesh:
     """The segments of joints of one snapshot as lines, moved with the disks on their left."""
-    import meshio
-
     places = snapshot["joints/ends"].reshape(-1, 2, 2)
     moved = snapshot["displacement"][snapshot["joints/particles"][:, 0], None, :2]
-    lines = np.arange(2 * len(places), dtype=np.int32).reshape(-1, 2)
     names = ("joint", "slip", "opening", "pressure", "shear", "state")
-    data = {name: snapshot[f"joints/{name}"] for name in names}
-    cells = {name: [values] for name, values in shown(data).items()}
-    return meshio.Mesh(in_space((places + moved).reshape(-1, 2)), [("line", lines)], cell_data=cells)
+    return _segments(in_space((places + moved).reshape(-1, 2)), {name: snapshot[f"joints/{name}"] for name in names})
 
 
 def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from dembound.motion.trackers import Run
 from dembound.results.reader import cracks_until, laws_in_words, open_record
 from dembound.results.warnings import energy_warnings, still_moving
 from dembound.words import numbers, percent, with_unit
+
+T = TypeVar("T")
 
 SHOWN = 1e-3
 """Share of the stress below which what differs in the packing itself is not printed."""
@@ -134,6 +136,8 @@ def _in_mpa(stress: Sequence[float]) -> str:
 
 def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
     """Entries of a summary of disks in addition to those of every run: plain JSON values, SI units."""
+    system, factor, far, turns = run.system, load_factor_of(run), _owner(run, FarDisks), _owner(run, Turns)
+    assert isinstance(system, DiskSystem)
     return {
         "particles": scene.disk_count,
         "has_history": scene.has_history,
@@ -141,39 +145,19 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "loose_disks_left_out": scene.assembly.loose,
         "packing": numbers(packing_quantities(scene)),
         "layers": describe_layers(scene),
-        "load_factor": _describe_load_factor(run),
-        "forces_at_rest": _describe_forces_at_rest(run),
-        "far": _describe_far(run),
-        "turns": _describe_turns(run),
+        "load_factor": None if factor is None else factor.describe(run) or {"factor": None},
+        "forces_at_rest": None if system.balance is None else system.side_watch.describe(),
+        "far": None if far is None else far.describe(run.time_step),
+        "turns": None if turns is None else turns.describe(run),
         "joints": describe_joints(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
 
 
-def _describe_load_factor(run: Run) -> dict[str, Any] | None:
-    """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
-    found = load_factor_of(run)
-    return None if found is None else found.describe(run) or {"factor": None}
-
-
-def _describe_forces_at_rest(run: Run) -> dict[str, Any] | None:
-    """What the forces at rest did at the sides, see `SideWatch.describe`; None without a static stage."""
-    system = run.system
-    if not isinstance(system, DiskSystem) or system.balance is None:
-        return None
-    return system.side_watch.describe()
-
-
-def _describe_far(run: Run) -> dict[str, Any] | None:
-    """Disks that have fallen far below the scene, see `FarDisks.describe`; None if there are none."""
-    found = run.state.owners.get(FarDisks.name)
-    return found.describe(run.time_step) if isinstance(found, FarDisks) else None
-
-
-def _describe_turns(run: Run) -> dict[str, Any] | None:
-    """The largest turn of a bond, see `Turns.describe`; None where bonds follow the motion."""
-    found = run.state.owners.get(Turns.name)
-    return found.describe(run) if isinstance(found, Turns) else None
+def _owner(run: Run, kind: type[T]) -> T | None:
+    """The tracker of a kind, whose arrays the state of a run has; None where there is none."""
+    found = run.state.owners.get(getattr(kind, "name", ""))
+    return found if isinstance(found, kind) else None
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:
@@ -192,18 +176,25 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
     excavation, if there was one. asked : target stress, Pa.
     """
     columns = dict(zip_longest(COLUMNS_AT_REST, settled.columns))
+    return stage_numbers(settled) | {
+        "stress": settled.stress.tolist(),
+        "asked": asked,
+        "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
+        "elastic": not settled.start.left_elastic_law,
+        **{name: None if one is None else describe_static(one, None) for name, one in columns.items()},
+        "before": None if settled.before is None else describe_static(settled.before, asked),
+    }
+
+
+def stage_numbers(settled: Settled) -> dict[str, Any]:
+    """Numbers of a static stage, as in records."""
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,
         "mean_reaction": settled.mean_reaction,
         "mean_residual": settled.mean_residual,
-        "stress": settled.stress.tolist(),
-        "asked": asked,
-        "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
-        "elastic": not settled.start.left_elastic_law,
+        "stress": settled.stress,
         "cracks": len(settled.cracks),
-        **{name: None if one is None else describe_static(one, None) for name, one in columns.items()},
-        "before": None if settled.before is None else describe_static(settled.before, asked),
     }
 
 

@@ -12,6 +12,7 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.scene import DiskScene
 from dembound.kinds.disks.continuum_facts import continuum_warnings
 from dembound.kinds.disks.facts import intact_warnings
+from dembound.kinds.disks.groups import group_warnings
 from dembound.kinds.disks.micro_macro import Own, materials_of
 from dembound.kinds.disks.side_warnings import load_warnings, side_warnings, spring_warnings
 from dembound.kinds.disks.slopes import slope_warnings
@@ -59,6 +60,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *side_warnings(scene),
         *slope_warnings(scene),
         *wall_warnings(scene),
+        *group_warnings(scene),
         *intact_warnings(scene),
         *spring_warnings(scene),
         *load_warnings(scene),

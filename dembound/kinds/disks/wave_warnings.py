@@ -7,17 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.boundaries import axis_of_motion, normal_axis
+from dembound.casefile import magnitudes
 from dembound.casefile.disks.load import Load
-from dembound.casefile.magnitudes import (
-    fast_ground,
-    grip_stress,
-    is_quasi_static,
-    large_stress,
-    large_velocity,
-    stress_warnings,
-    time_warnings,
-    waves_used,
-)
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene
 from dembound.disks.sides import boundary_medium, medium_of_side
@@ -51,7 +42,7 @@ def wave_warnings(scene: DiskScene, time_step: float) -> Iterator[str]:
     yield from _tension(scene)
     yield from _too_few_per_wavelength(scene)
     yield from _never_arrives(scene)
-    yield from time_warnings(scene.case, time_step, _travel_time(scene))
+    yield from magnitudes.time_warnings(scene.case, time_step, _travel_time(scene))
     yield from _stress_beside_strength(scene)
     yield from _large_strains(scene)
     yield from _rotation_held(scene)
@@ -96,7 +87,7 @@ def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
     """Waves that are too short for the size of the particles, except for those of a slow grip."""
     travel = _travel_time(scene)
     for name, count in particles_per_wavelength(scene).items():
-        if count < FEWEST_PER_WAVELENGTH and not is_quasi_static(scene.case, name, travel):
+        if count < FEWEST_PER_WAVELENGTH and not magnitudes.is_quasi_static(scene.case, name, travel):
             wave = scene.case.wave[name]
             if isinstance(wave, Constant):
                 yield f"wave.{name}: {_too_sudden(scene, wave)}; the packing will disperse it"
@@ -111,7 +102,7 @@ def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
     return {
         name: speed / wave.highest_frequency() / spacing if np.isfinite(speed) else np.inf
         for name, wave in scene.case.wave.items()
-        if name in waves_used(scene.case)
+        if name in magnitudes.waves_used(scene.case)
     }
 
 
@@ -176,7 +167,7 @@ def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
         stresses[f"load.{load.name}"] = _load_stress(scene, load)
     if static is not None and static.stress is not None:
         stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
-    yield from stress_warnings(stresses, strength, key)
+    yield from magnitudes.stress_warnings(stresses, strength, key)
 
 
 def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
@@ -190,7 +181,7 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
             if axis_of_motion(edge.side, motion) in grips:
                 yield (
                     f"wave.{name}",
-                    *grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
+                    *magnitudes.grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
                 )
             else:
                 yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
@@ -238,16 +229,16 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
     reason, owns = _TOO_LARGE[scene.has_history], list(materials_of(scene))
     for name, (words, speed) in sorted(_entering_speeds(scene).items()):
         wave, place = scene.case.wave[name], f"wave.{name}"
-        strained = list(large_velocity(place, wave.peak(), speed, reason, words))
-        yield from strained or fast_ground(place, wave)
+        strained = list(magnitudes.large_velocity(place, wave.peak(), speed, reason, words))
+        yield from strained or magnitudes.fast_ground(place, wave)
     compared = scene.has_history and any(own.material.pb_ten is not None for own in owns)  # with the strength
     for load in () if compared else scene.case.load:
         what, stress = _load_stress(scene, load)
-        yield from large_stress(f"load.{load.name}: {what}", stress, min(moduli), reason)
+        yield from magnitudes.large_stress(f"load.{load.name}: {what}", stress, min(moduli), reason)
     if (static := scene.case.static) is not None and static.stress is not None:
         xx, yy, xy = static.stress
         largest = abs(0.5 * (xx + yy)) + float(np.hypot(0.5 * (xx - yy), xy))
-        yield from large_stress("static.stress: its largest principal stress", largest, min(moduli), reason)
+        yield from magnitudes.large_stress("static.stress: its largest principal stress", largest, min(moduli), reason)
     strengths = {
         own.key(key): (strength, modulus)
         for modulus, own in sorted(zip(moduli, owns, strict=True), key=lambda each: -each[0])  # the softest layer last
@@ -255,7 +246,7 @@ def _large_strains(scene: DiskScene) -> Iterator[str]:
         if strength is not None
     }
     for key, (strength, modulus) in strengths.items():
-        yield from large_stress(f"{key}:", strength, modulus, _TOO_LARGE[True])
+        yield from magnitudes.large_stress(f"{key}:", strength, modulus, _TOO_LARGE[True])
 
 
 def _rotation_held(scene: DiskScene) -> Iterator[str]:

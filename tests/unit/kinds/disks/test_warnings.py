@@ -11,6 +11,7 @@ from warned_cases import DENSE, GROUND, SLOW, warned
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stepping.side_watch import lasting_force_warnings, reach_warnings
 from dembound.kinds.disks.facts import creep, intact_facts, intact_warnings
+from dembound.kinds.disks.groups import group_warnings
 from dembound.kinds.disks.micro_macro import materials_of
 from dembound.kinds.disks.side_warnings import load_warnings
 from dembound.kinds.disks.warnings import _s_speed_of_the_packing
@@ -170,6 +171,18 @@ def test_sides_without_a_zone_are_warned_of_where_forces_at_rest_act() -> None:
     assert drifts.startswith("boundary: dashpots alone bear this ground")  # as there are no springs either
     assert said.startswith("boundary.bottom.intact: is 0, but forces of the static stage go on acting there")
     assert list(intact_warnings(breaking(ground, material=TOUGH))) == []
+
+
+def test_friction_of_a_group_at_a_free_field_of_loose_ground_is_warned_of() -> None:
+    loose = {"material": TOUGH | {"contact_share": 1.0, "fric": 0.5}, "load": [WEIGHT]}
+
+    def said(region: list[float], **own: float) -> list[str]:
+        group = {"name": "slick", "region": region, **own}
+        return list(group_warnings(breaking(FREE_FIELD | {"bottom": BOTTOM}, **loose, group=[group])))
+
+    (line,) = said([0.0, 0.0, 2.0, 4.0], fric=0.2)
+    assert line.startswith("group.slick.fric: reaches boundary.left, beyond which the free-field column slides by")
+    assert said([2.0, 0.0, 4.0, 4.0], fric=0.2) == said([0.0, 0.0, 2.0, 4.0], fric=0.5) == []
 
 
 def test_a_load_that_lasts_creeps_on_dashpots_and_the_weight_that_leaves_too() -> None:
