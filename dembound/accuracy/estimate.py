@@ -85,12 +85,7 @@ def _estimated(
 
 
 def _causes(
-    case: Case,
-    recorded: Motions,
-    until: float,
-    summary: Mapping[str, Any],
-    watch: Watch | None,
-    longest: float | None,
+    case: Case, recorded: Motions, until: float, summary: Mapping[str, Any], watch: Watch | None, longest: float | None
 ) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
     broken = [] if case.run.duration < until else [f"motion after {until:.4g} s, when the first bond broke"]

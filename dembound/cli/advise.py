@@ -61,10 +61,7 @@ Of = Annotated[
         "where the packing is random or bonds may break.",
     ),
 ]
-Seeds = Annotated[
-    int,
-    typer.Option(min=1, help="Random packings, to see how results scatter.", metavar="N"),
-]
+Seeds = Annotated[int, typer.Option(min=1, help="Random packings, to see how results scatter.", metavar="N")]
 Longest = Annotated[
     float | None,
     typer.Option(

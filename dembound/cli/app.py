@@ -187,9 +187,7 @@ class Side(StrEnum):
 
 
 @app.callback(invoke_without_command=True)
-def _version(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
-) -> None:
+def _version(version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False) -> None:
     if version:
         out.print(f"dembound {__version__}")
         raise typer.Exit

@@ -58,9 +58,7 @@ def calibrate_sides(
     calibrated: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE",
-            help="Calibrated case; by default NAME_calibrated.toml beside the case.",
-            callback=writable,
+            metavar="FILE", help="Calibrated case; by default NAME_calibrated.toml beside the case.", callback=writable
         ),
     ] = None,
     changes: Settings = None,

@@ -14,18 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within, print_estimate
-from dembound.cli.app import (
-    MORE,
-    Cases,
-    Name,
-    Output,
-    Settings,
-    Threads,
-    app,
-    changed,
-    load_case,
-    prepare_computing,
-)
+from dembound.cli.app import MORE, Cases, Name, Output, Settings, Threads, app, changed, load_case, prepare_computing
 from dembound.cli.console import compact_table, ending_with, err, out
 from dembound.errors import CaseError
 from dembound.version import IMPORT_BEGAN
@@ -244,12 +233,7 @@ def _print_replaced(case: Case, output: Path) -> None:
 
 
 def _run(
-    case: Case,
-    output: Path,
-    spent: dict[str, float],
-    begun_for: float | None = None,
-    *,
-    estimated: bool = False,
+    case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None, *, estimated: bool = False
 ) -> None:
     """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
 

@@ -45,15 +45,13 @@ def chart(
         ),
     ] = None,
     quantity: Annotated[
-        ChartQuantity,
-        typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars)."),
+        ChartQuantity, typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars).")
     ] = "velocity",
     component: Annotated[ChartComponent | None, typer.Option(help="By default the largest in the reference.")] = None,
     monitor: Annotated[str | None, typer.Option(metavar="NAME", help="By default that with the largest error.")] = None,
     of: Of = None,
     repeats: Annotated[
-        int | None,
-        typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's."),
+        int | None, typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
     output: Output = Path("results"),

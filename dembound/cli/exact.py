@@ -186,16 +186,11 @@ STRENGTH = "strength.csv"
 def stability(
     case: OneCase,
     steps: Annotated[
-        int | None,
-        typer.Option(
-            help="Steps of noise at the case's own time step; by default 5,000 to 100,000.",
-            min=1,
-        ),
+        int | None, typer.Option(help="Steps of noise at the case's own time step; by default 5,000 to 100,000.", min=1)
     ] = None,
     full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
     strength: Annotated[
-        bool,
-        typer.Option("--strength", help="How near the ground is to failure under its weight, not the step."),
+        bool, typer.Option("--strength", help="How near the ground is to failure under its weight, not the step.")
     ] = False,
     tolerance: Annotated[
         float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")

@@ -42,8 +42,7 @@ class EvaluationOptions:
         typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
     ] = None
     estimate: Annotated[
-        bool,
-        typer.Option("--estimate", help="Speed and attenuation from tension peaks, though results have them."),
+        bool, typer.Option("--estimate", help="Speed and attenuation from tension peaks, though results have them.")
     ] = False
     peaks: Annotated[
         int | None, typer.Option(help="Number of first tension peaks for speed and attenuation.", min=2)
@@ -52,10 +51,7 @@ class EvaluationOptions:
         float | None, typer.Option(help="When the incident pulse has passed (s); by default when it returns.")
     ] = None
     wave_speed: Annotated[float | None, typer.Option(help="Wave speed (m/s) of another test.")] = None
-    attenuation: Annotated[
-        float | None,
-        typer.Option(help="Attenuation (1/m) of another test."),
-    ] = None
+    attenuation: Annotated[float | None, typer.Option(help="Attenuation (1/m) of another test.")] = None
 
     def of(self, gauge: Gauge, path: Path) -> Findings:
         """All estimates from a gauge in a file; raises CaseError as `evaluate` and `read_free_end`."""
@@ -158,8 +154,7 @@ def _error(error: float) -> str:
 
 
 Window = Annotated[
-    tuple[float, float] | None,
-    _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found."),
+    tuple[float, float] | None, _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found.")
 ]
 Column = Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Its column, or monitor of results.")]
 

@@ -10,18 +10,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from dembound.cli.app import (
-    MORE,
-    Name,
-    Output,
-    Scheduler,
-    Settings,
-    app,
-    few,
-    load_disks,
-    require_one_place,
-    text_for,
-)
+from dembound.cli.app import MORE, Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place, text_for
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import ending_with, err, out, print_lines, print_rows
 from dembound.cli.options import leave, with_tables

@@ -168,10 +168,7 @@ class Plotted:
         ),
     ] = None
     exaggerate: Exaggerated = None
-    table: Annotated[
-        Path | None,
-        typer.Option(help="Table of the lines drawn (CSV).", callback=writable),
-    ] = None
+    table: Annotated[Path | None, typer.Option(help="Table of the lines drawn (CSV).", callback=writable)] = None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:
         """Options that exclude each other, for a number of results of a kind."""
@@ -224,8 +221,5 @@ class Plotted:
         from dembound.plot.histories import plot_histories
 
         return plot_histories(
-            files,
-            component=self.component,
-            quantity=self.quantity or "velocity",
-            monitors=self.monitor or None,
+            files, component=self.component, quantity=self.quantity or "velocity", monitors=self.monitor or None
         )

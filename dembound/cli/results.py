@@ -59,9 +59,7 @@ def _kind(file: Path) -> str:
 
 
 @app.command("cache", rich_help_panel=MORE)
-def cache(
-    delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
-) -> None:
+def cache(delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False) -> None:
     """Show the folder of packed bricks, or empty it.
 
     The environment variable DEMBOUND_CACHE sets another folder.
@@ -78,11 +76,7 @@ def compare_histories(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     quantity: Annotated[
-        Quantity,
-        typer.Option(
-            metavar="QUANTITY",
-            help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.",
-        ),
+        Quantity, typer.Option(metavar="QUANTITY", help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.")
     ] = "velocity",
     as_recorded: Annotated[
         bool, typer.Option("--as-recorded", help="No correction for waves that enter disks later or earlier.")

@@ -58,15 +58,10 @@ def _movie(path: Path) -> Path:
 def movie(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     output: Annotated[
-        Path,
-        typer.Option("--output", "-o", help="GIF, or a new folder of PNG files.", callback=_movie),
+        Path, typer.Option("--output", "-o", help="GIF, or a new folder of PNG files.", callback=_movie)
     ] = Path("movie.gif"),
     field: Annotated[
-        SceneField | None,
-        typer.Option(
-            metavar="FIELD",
-            help="Field shown: velocity, of a bar also stress and damage.",
-        ),
+        SceneField | None, typer.Option(metavar="FIELD", help="Field shown: velocity, of a bar also stress and damage.")
     ] = None,
     exaggerate: Exaggerated = None,
     monitor: Annotated[

@@ -47,10 +47,9 @@ class SignalOptions:
     no_drift: Annotated[bool, _cleaning("--no-drift", help="Remove no drift.")] = False
     low_pass: Annotated[float | None, _cleaning(help="Keep what is below (Hz).")] = None
     high_pass: Annotated[float | None, _cleaning(help="Keep what is above (Hz).")] = None
-    band: Annotated[
-        tuple[float, float] | None,
-        _cleaning(metavar="LOW HIGH", help="The band that remains (Hz)."),
-    ] = None
+    band: Annotated[tuple[float, float] | None, _cleaning(metavar="LOW HIGH", help="The band that remains (Hz).")] = (
+        None
+    )
     notch: Annotated[list[float] | None, _cleaning(help="Remove this frequency (Hz). May be repeated.")] = None
 
     def reading(self, column: str | None = None) -> Reading:

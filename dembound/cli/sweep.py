@@ -70,8 +70,7 @@ def sweep(
         SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        Method | None,
-        typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
+        Method | None, typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`.")
     ] = None,
     processes: Annotated[
         int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")

@@ -130,10 +130,7 @@ class GroundOptions:
     ] = None
     kinds: Annotated[
         list[Kind] | None,
-        typer.Option(
-            "--as",
-            help="Kind of wave of each component in --deconvolve; by default the case's only one.",
-        ),
+        typer.Option("--as", help="Kind of wave of each component in --deconvolve; by default the case's only one."),
     ] = None
     damping: Annotated[
         Damping,
@@ -146,9 +143,7 @@ class GroundOptions:
     transfer: Annotated[
         Path | None,
         typer.Option(
-            metavar="NAME.png",
-            help="Transfer functions of the ground in --deconvolve (PNG and CSV).",
-            callback=png,
+            metavar="NAME.png", help="Transfer functions of the ground in --deconvolve (PNG and CSV).", callback=png
         ),
     ] = None
 

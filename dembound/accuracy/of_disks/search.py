@@ -18,13 +18,7 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.of_disks.candidates import CUT, Candidates, option_of
-from dembound.accuracy.of_disks.causes import (
-    PLACES,
-    causes_of_choice,
-    ground_causes,
-    rest_causes,
-    sides_cause,
-)
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, ground_causes, rest_causes, sides_cause
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin

@@ -25,12 +25,7 @@ def joined(first: Link, middle: np.ndarray, second: Link) -> Link:
     """Two links as one, with the block between them, of the matrix middle (f, b, b), eliminated."""
     answer = solve(middle + first.d + second.a, np.concatenate([first.c, second.b], axis=2))
     by_left, by_right = np.split(answer, 2, axis=2)
-    return Link(
-        first.a - first.b @ by_left,
-        -first.b @ by_right,
-        -second.c @ by_left,
-        second.d - second.c @ by_right,
-    )
+    return Link(first.a - first.b @ by_left, -first.b @ by_right, -second.c @ by_left, second.d - second.c @ by_right)
 
 
 class Row:

@@ -282,10 +282,7 @@ def causes_at_surface(scene: DiskScene, motions: Motions) -> Iterator[Cause]:
     size = SINGLE * slowness * ground.brick.mean_diameter
     near = case.box[3] - NEAR_SURFACE * ground.brick.mean_diameter
     parts = {
-        name: {
-            "velocity": size * np.gradient(own.velocity, own.time, axis=0),
-            "displacement": size * own.velocity,
-        }
+        name: {"velocity": size * np.gradient(own.velocity, own.time, axis=0), "displacement": size * own.velocity}
         for name, own in motions.items()
         if own.place[1] > near
     }

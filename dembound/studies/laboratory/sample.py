@@ -247,11 +247,7 @@ class Sample:
         yield from ("[output]", f"snapshots = {SNAPSHOTS}", f'paraview = "{paraview}"', "pictures = false")
 
 
-def sample_of(
-    case: DiskCase,
-    test: str,
-    loading: Loading = USUAL_LOADING,
-) -> Sample:
+def sample_of(case: DiskCase, test: str, loading: Loading = USUAL_LOADING) -> Sample:
     """A sample of the material of a case; test : a `TestName`. loading : with the size of the case's disks by default.
 
     A given width makes it twice as high; a Brazilian sample is round, of this width. Lengths of lattices are rounded to
