@@ -14,9 +14,8 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import value_at
 from dembound.accuracy.judge import judge_of
-from dembound.accuracy.proposal import Advice, Watch
+from dembound.accuracy.proposal import Advice, Request, Watch
 from dembound.accuracy.repeat import Cracked, repeated
-from dembound.accuracy.runner import BUDGET, SHORT
 from dembound.casefile import Case
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import require_writable
@@ -111,8 +110,7 @@ def causes_of(
     the run, s. work : of the run, in the unit of its kind of body; companions take a tenth of it, or `SHORT`, if
     possible. watch : told of what is done. longest : CPU seconds that they may take, if that is more than by default.
     """
-    most = max(SHORT, BUDGET * work)
-    return judge_of(case).causes(case, recorded, time_step, work, most, watch or Watch(), longest)
+    return judge_of(case).causes(case, recorded, time_step, work, watch or Watch(), longest)
 
 
 def estimate_if_asked(case: Case, folder: Path) -> str:
@@ -246,5 +244,6 @@ def advise(
         value_at(case, key)
     judge, clock = judge_of(case), Clock(time.process_time)
     with clock.with_compiling(), clock.of("advise"):
-        found = judge.advise(case, bounds, of or judge.truth(case), kept, longest, seeds, watch or Watch())
+        asked = Request(bounds, of or judge.truth(case), kept, longest, seeds, watch or Watch())
+        found = judge.advise(case, asked)
     return replace(found, cpu_seconds=clock.seconds["advise"])
