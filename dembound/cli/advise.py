@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, Cases, Settings, Threads, app, load_case, prepare_computing, text_for
 from dembound.cli.console import err, out, print_lines
@@ -37,7 +37,7 @@ Truth = Literal["disks", "rock"]
 
 Error = Annotated[
     str | None,
-    typer.Option(
+    Option(
         "--error",
         metavar="ERROR",
         help="Largest error of velocity and displacement at all monitors, such as 1% or 0.01. "
@@ -46,7 +46,7 @@ Error = Annotated[
 ]
 Keep = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--keep",
         metavar="KEY",
         help="A key or table that is not changed, e.g. packing.radius or boundary. May be repeated; keys given by "
@@ -55,16 +55,16 @@ Keep = Annotated[
 ]
 Of = Annotated[
     Truth | None,
-    typer.Option(
+    Option(
         "--of",
         help="Errors of these disks as the material, or of the rock, for which they are a grid; by default disks "
         "where the packing is random or bonds may break.",
     ),
 ]
-Seeds = Annotated[int, typer.Option(min=1, help="Random packings, to see how results scatter.", metavar="N")]
+Seeds = Annotated[int, Option(min=1, help="Random packings, to see how results scatter.", metavar="N")]
 Longest = Annotated[
     float | None,
-    typer.Option(
+    Option(
         "--longest",
         min=0.0,
         metavar="SECONDS",
@@ -219,13 +219,12 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
 
 
 Repeat = Annotated[
-    bool,
-    typer.Option("--repeat", help="Repeat the run with 0.98 of its time step, to see what of the cracks is chance."),
+    bool, Option("--repeat", help="Repeat the run with 0.98 of its time step, to see what of the cracks is chance.")
 ]
 
 Spent = Annotated[
     float | None,
-    typer.Option(
+    Option(
         "--longest",
         min=0.0,
         metavar="SECONDS",
@@ -236,7 +235,7 @@ Spent = Annotated[
 
 @app.command("estimate", rich_help_panel=MORE)
 def estimate(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     repeat: Repeat = False,
     longest: Spent = None,
     threads: Threads = None,

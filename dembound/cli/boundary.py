@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
 from rich.table import Table
+from typer import Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing
 from dembound.cli.calibration import OneCase
@@ -46,7 +46,7 @@ def boundary(
     case: OneCase,
     sides: Annotated[
         list[Side] | None,
-        typer.Option(
+        Option(
             "--side",
             "-s",
             metavar="SIDE",
@@ -55,15 +55,14 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        typer.Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
+        Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
     ] = None,
     frequencies: Annotated[
-        list[float] | None,
-        typer.Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated."),
+        list[float] | None, Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated.")
     ] = None,
     types: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--type",
             metavar="TYPE",
             help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'. May be "
@@ -72,13 +71,11 @@ def boundary(
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Quick estimate with a continuum in place of the disks.")
-    ] = False,
+    quick: Annotated[bool, Option("--quick", help="Quick estimate with a continuum in place of the disks.")] = False,
     table: CurveTable = None,
     longest: Annotated[
         float,
-        typer.Option(
+        Option(
             "--longest", min=0.0, metavar="SECONDS", help="CPU seconds, about, within which frequencies are measured."
         ),
     ] = LONGEST,

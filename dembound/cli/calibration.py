@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import (
     Name,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 CALIBRATED = "_calibrated"
 """Suffix of the name of a calibrated case."""
 
-OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
+OneCase = Annotated[Path, Argument(metavar="CASE", help="A case file (TOML).")]
 
 
 WaveType = Literal["p", "s"]
@@ -45,19 +45,19 @@ def calibrate_sides(
     case: OneCase,
     *,
     boundary: Annotated[
-        Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
+        Side | None, Option("--boundary", "-b", help="Side to calibrate; required without --all.")
     ] = None,
     every: Annotated[
-        bool, typer.Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
+        bool, Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
     ] = False,
     wave: Annotated[
-        WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
+        WaveType | None, Option(help="P or S; by default the wave that runs towards this side, else P.")
     ] = None,
     how: Calibrating,
     output: Output = Path("results"),
     calibrated: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="FILE", help="Calibrated case; by default NAME_calibrated.toml beside the case.", callback=writable
         ),
     ] = None,

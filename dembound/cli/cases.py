@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within, print_estimate
 from dembound.cli.app import MORE, Cases, Name, Output, Settings, Threads, app, changed, load_case, prepare_computing
@@ -107,7 +107,7 @@ def run(
     changes: Settings = None,
     name: Name = None,
     threads: Threads = None,
-    estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
+    estimate: Annotated[bool, Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
     error: Error = None,
     keep: Keep = None,
     longest: Longest = None,
@@ -159,8 +159,8 @@ def run(
 
 @app.command("resume", rich_help_panel=MORE)
 def resume(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
-    until: Annotated[float | None, typer.Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
+    until: Annotated[float | None, Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
     threads: Threads = None,
 ) -> None:
     """Continue stopped runs from their last checkpoints.
@@ -185,7 +185,7 @@ def resume(
 
 @app.command("rerun", rich_help_panel=MORE)
 def rerun(
-    record: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
+    record: Annotated[Path, Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Option
 
 from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, few, load_case, prepare_computing
@@ -38,27 +38,27 @@ def chart(
     vary: Vary = None,
     reference: Annotated[
         ChartReference | None,
-        typer.Option(
+        Option(
             metavar="REFERENCE",
             help="exact, a solution; extended, a scene so large that nothing returns; finer, of bars; finest, the "
             "choice with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
-        ChartQuantity, typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars).")
+        ChartQuantity, Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars).")
     ] = "velocity",
-    component: Annotated[ChartComponent | None, typer.Option(help="By default the largest in the reference.")] = None,
-    monitor: Annotated[str | None, typer.Option(metavar="NAME", help="By default that with the largest error.")] = None,
+    component: Annotated[ChartComponent | None, Option(help="By default the largest in the reference.")] = None,
+    monitor: Annotated[str | None, Option(metavar="NAME", help="By default that with the largest error.")] = None,
     of: Of = None,
     repeats: Annotated[
-        int | None, typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's.")
+        int | None, Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
+    resume: Annotated[bool, Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,
     name: Name = None,
-    threads: Annotated[int, typer.Option(min=1, help="CPU times vary least with one.")] = 1,
+    threads: Annotated[int, Option(min=1, help="CPU times vary least with one.")] = 1,
 ) -> None:
     """Chart the errors of many choices of keys against their cost.
 

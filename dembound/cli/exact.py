@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Table
 from rich.text import Text
+from typer import Argument, Option
 
 from dembound.cli.app import (
     MORE,
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 
 @app.command("exact", rich_help_panel=MORE)
 def exact(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
+    path: Annotated[Path, Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
-        str | None, typer.Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
+        str | None, Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -86,22 +86,19 @@ def _several(default: Sequence[float]) -> str:
 
 @app.command("dispersion", rich_help_panel=MORE)
 def dispersion(
-    cases: Annotated[list[Path] | None, typer.Argument(metavar="CASE", help="Case files of bars.")] = None,
+    cases: Annotated[list[Path] | None, Argument(metavar="CASE", help="Case files of bars.")] = None,
     horizons: Annotated[
         list[int] | None,
-        typer.Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
+        Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
     ] = None,
     spacings: Annotated[
-        list[float] | None, typer.Option("--spacing", help=f"Distance Δx of the nodes (m). {_several(SPACINGS)}")
+        list[float] | None, Option("--spacing", help=f"Distance Δx of the nodes (m). {_several(SPACINGS)}")
     ] = None,
     time_steps: Annotated[
-        list[float] | None,
-        typer.Option("--time-step", help=f"Time step Δt (s); 0: exact in time. {_several(TIME_STEPS)}"),
+        list[float] | None, Option("--time-step", help=f"Time step Δt (s); 0: exact in time. {_several(TIME_STEPS)}")
     ] = None,
-    wave_speed: Annotated[
-        float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
-    ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, too.")] = False,
+    wave_speed: Annotated[float | None, Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")] = None,
+    check: Annotated[bool, Option("--check", help="Simulate some waves, too.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
     title: PictureTitle = None,
     table: CurveTable = None,
@@ -186,18 +183,18 @@ STRENGTH = "strength.csv"
 def stability(
     case: OneCase,
     steps: Annotated[
-        int | None, typer.Option(help="Steps of noise at the case's own time step; by default 5,000 to 100,000.", min=1)
+        int | None, Option(help="Steps of noise at the case's own time step; by default 5,000 to 100,000.", min=1)
     ] = None,
-    full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
+    full: Annotated[bool, Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
     strength: Annotated[
-        bool, typer.Option("--strength", help="How near the ground is to failure under its weight, not the step.")
+        bool, Option("--strength", help="How near the ground is to failure under its weight, not the step.")
     ] = False,
     tolerance: Annotated[
-        float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")
+        float | None, Option(help="Relative width of the brackets of --strength; by default 0.02.")
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--output",
             "-o",
             help="Picture (PNG), by default stability.png; of --strength the table (CSV), strength.csv.",
@@ -304,8 +301,8 @@ def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
     title: PictureTitle = None,
-    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
-    brick: Annotated[bool, typer.Option("--brick", help="The first case's whole brick.")] = False,
+    side: Annotated[Side, Option(help="Side whose particles are marked.")] = Side.right,
+    brick: Annotated[bool, Option("--brick", help="The first case's whole brick.")] = False,
     changes: Settings = None,
 ) -> None:
     """Draw a side of the packing of each case, or a brick (PNG)."""

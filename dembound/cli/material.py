@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place, text_for
 from dembound.cli.calibration import OneCase
@@ -35,7 +36,7 @@ class LoadingOptions(Loading):
     """Samples, how they are loaded, and where they run."""
 
     processes: Annotated[
-        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
+        int | None, Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
     ] = None
     scheduler: Scheduler = None
 
@@ -80,19 +81,17 @@ PRINTED = {
 @app.command("test")
 @with_tables
 def laboratory(
-    kind: Annotated[str, typer.Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
+    kind: Annotated[str, Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
+    case: Annotated[Path, Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
     *,
     seeds: Annotated[
-        int, typer.Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
+        int, Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
     ] = 4,
     pressures: Annotated[
-        str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
+        str | None, Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
     ] = None,
-    shares: Annotated[
-        str, typer.Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")
-    ] = "0.1,0.5",
-    anew: Annotated[bool, typer.Option("--anew", help="Also repeat samples that are done.")] = False,
+    shares: Annotated[str, Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")] = "0.1,0.5",
+    anew: Annotated[bool, Option("--anew", help="Also repeat samples that are done.")] = False,
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,
@@ -274,17 +273,15 @@ def material(
     case: OneCase,
     *,
     ucs: Annotated[
-        float | None, typer.Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
+        float | None, Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
     ] = None,
     tension: Annotated[
-        float | None, typer.Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
+        float | None, Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
     ] = None,
-    seeds: Annotated[
-        int, typer.Option(min=1, callback=few, help="Samples of each test, for --ucs and --tension.")
-    ] = SEEDS,
+    seeds: Annotated[int, Option(min=1, callback=few, help="Samples of each test, for --ucs and --tension.")] = SEEDS,
     output: Output = Path("results"),
     changes: Settings = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
+    as_json: Annotated[bool, Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
     loading: LoadingOptions,
 ) -> None:
     """Print what contacts and bonds make of the body, without a run.

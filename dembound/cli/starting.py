@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
 from dembound import shipped
 from dembound.cli.app import MORE, app, writable
@@ -24,19 +25,19 @@ app.add_typer(cases, name="cases", rich_help_panel=MORE)
 @app.command("new")
 def new(
     path: Annotated[
-        Path, typer.Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
+        Path, Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
     ] = Path("case.toml"),
     start: Annotated[
         str | None,
-        typer.Option(
+        Option(
             "--from",
             metavar="NAME",
             help=f"Starting point; by default the one of the file's name, or else {DEFAULT}.",
             autocompletion=lambda: names(),
         ),
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="List the starting points.")] = False,
-    schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
+    listed: Annotated[bool, Option("--list", help="List the starting points.")] = False,
+    schema: Annotated[bool, Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
     """Write a commented case file to start from."""
     if listed:
@@ -103,7 +104,7 @@ def _schema() -> str:
 
 @app.command("schema", rich_help_panel=MORE)
 def schema(
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="File (JSON).", callback=writable)] = None,
+    output: Annotated[Path | None, Option("--output", "-o", help="File (JSON).", callback=writable)] = None,
 ) -> None:
     """Print the JSON schema of case files, for editors."""
     if output is None:
@@ -126,13 +127,13 @@ def list_cases(context: typer.Context) -> None:
 def copy(
     name: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="NAME",
             help="A case, as `dembound cases` lists it, or a group such as zhou2018.",
             autocompletion=lambda: [*shipped.groups(), *shipped.names()],
         ),
     ],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to.")] = Path(),
+    folder: Annotated[Path, Argument(metavar="FOLDER", help="Where to.")] = Path(),
 ) -> None:
     """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
     for path in shipped.copy(name, folder):

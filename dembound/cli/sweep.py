@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 from dembound.cli.app import (
     MORE,
@@ -62,23 +63,21 @@ def sweep(
     vary: Vary = None,
     together: Annotated[
         bool | None,
-        typer.Option(
-            "--together/--product", help="First values of all keys together, then the second ones, and so on."
-        ),
+        Option("--together/--product", help="First values of all keys together, then the second ones, and so on."),
     ] = None,
     action: Annotated[
-        SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
+        SweepAction | None, Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        Method | None, typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`.")
+        Method | None, Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`.")
     ] = None,
     processes: Annotated[
-        int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
+        int | None, Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
     ] = None,
     scheduler: Scheduler = None,
-    anew: Annotated[bool, typer.Option("--anew", help="Also repeat members that are done.")] = False,
+    anew: Annotated[bool, Option("--anew", help="Also repeat members that are done.")] = False,
     quantity: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
+        list[str] | None, Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
     ] = None,
     output: Output = Path("results"),
     title: PictureTitle = None,
@@ -241,10 +240,10 @@ def _leave(swept: Swept, folder: Path, title: str | None) -> None:
 
 @app.command("library", rich_help_panel=MORE)
 def library(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
-    spacing: Annotated[float, typer.Option(help="Time between two values of the records (s).", min=1e-12)],
+    path: Annotated[Path, Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
+    spacing: Annotated[float, Option(help="Time between two values of the records (s).", min=1e-12)],
     duration: Annotated[
-        float | None, typer.Option(help="Length of the longest record (s); by default that of the case.", min=1e-12)
+        float | None, Option(help="Length of the longest record (s); by default that of the case.", min=1e-12)
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -268,10 +267,10 @@ def library(
 
 @app.command("respond", rich_help_panel=MORE)
 def respond(
-    folder: Annotated[Path, typer.Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
+    folder: Annotated[Path, Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
     records: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             metavar="RECORD...",
             help="Text files of time (s) and velocity (m/s); of a library with several inputs INPUT=FILE,INPUT=FILE.",
         ),
@@ -279,7 +278,7 @@ def respond(
     output: Output = Path("results"),
     contacts: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--load-factor",
             metavar="MONITOR,MONITOR",
             help="Print the load factor of each record at the contact between the disks of two monitors. May be "

@@ -10,9 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
 from rich.table import Table
 from rich.text import Text
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, app, ending_in, png
 from dembound.cli.console import compact_table, err, out
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from dembound.records.formats import Reading
     from dembound.records.processing import Motion, Processing
 
-_step = partial(typer.Option, rich_help_panel="Processing")
-_given = partial(typer.Option, rich_help_panel="Files that state too little")
+_step = partial(Option, rich_help_panel="Processing")
+_given = partial(Option, rich_help_panel="Files that state too little")
 
 HEADS = (
     *("com-\nponent", "sam-\nples", "rate\n(Hz)", "PGA\n(m/s²)", "PGA\n(g)", "PGV\n(m/s)", "PGD\n(m)"),
@@ -124,17 +124,15 @@ class GroundOptions:
 
     deconvolve: Annotated[
         Path | None,
-        typer.Option(
-            metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."
-        ),
+        Option(metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."),
     ] = None
     kinds: Annotated[
         list[Kind] | None,
-        typer.Option("--as", help="Kind of wave of each component in --deconvolve; by default the case's only one."),
+        Option("--as", help="Kind of wave of each component in --deconvolve; by default the case's only one."),
     ] = None
     damping: Annotated[
         Damping,
-        typer.Option(
+        Option(
             metavar="DAMPING",
             help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q), as in equivalent-linear programs; or constant_q, "
             "causal.",
@@ -142,7 +140,7 @@ class GroundOptions:
     ] = "as_run"
     transfer: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             metavar="NAME.png", help="Transfer functions of the ground in --deconvolve (PNG and CSV).", callback=png
         ),
     ] = None
@@ -187,13 +185,11 @@ _csv = ending_in(".csv")
 @app.command("wave", rich_help_panel=MORE)
 @with_tables
 def wave(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
-    component: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="This component only. May be repeated.")
-    ] = None,
+    file: Annotated[Path, Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
+    component: Annotated[list[str] | None, Option(metavar="NAME", help="This component only. May be repeated.")] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--output",
             "-o",
             metavar="NAME.csv",
@@ -201,13 +197,11 @@ def wave(
             callback=_csv,
         ),
     ] = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Picture (PNG); by default that of the wave.", callback=png)
-    ] = None,
+    picture: Annotated[Path | None, Option(help="Picture (PNG); by default that of the wave.", callback=png)] = None,
     *,
     ground: GroundOptions,
     table: Annotated[
-        Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture (CSV).", callback=_csv)
+        Path | None, Option(metavar="NAME.csv", help="Curves of the picture (CSV).", callback=_csv)
     ] = None,
     reading: ReadingOptions,
     processing: ProcessingOptions,
