@@ -205,13 +205,9 @@ class Plotted:
 
     def _side(self, files: Sequence[Path], side: str) -> Figure:
         """A side: its particles, or a quantity of the side as a whole."""
-        if self.quantity is None:
-            from dembound.plot.side import plot_boundary
+        from dembound.plot.side import plot_boundary, plot_side
 
-            return plot_boundary(files, side)
-        from dembound.plot.side import plot_side
-
-        return plot_side(files, side, self.quantity)
+        return plot_boundary(files, side) if self.quantity is None else plot_side(files, side, self.quantity)
 
     def _histories(self, files: Sequence[Path]) -> Figure:
         """The histories of monitors."""
