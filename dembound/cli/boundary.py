@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,7 +12,7 @@ from typer import Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.cli.console import compact_table, err, out, seldom
 from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError
 from dembound.machine import one_thread_for_matrices
@@ -189,12 +188,10 @@ def _within(longest: float, count: int, each: float, name: str, *, may_be_fewer:
 
 def _report(side: str) -> Callable[[float], None]:
     """Prints the frequency that is being computed, at most every `INTERVAL` seconds."""
-    said = time.monotonic()
+    is_due = seldom()
 
     def report(frequency: float) -> None:
-        nonlocal said
-        if time.monotonic() - said > INTERVAL:
-            said = time.monotonic()
+        if is_due():
             err.print(f"{side}: {frequency:.3g} Hz")
 
     return report

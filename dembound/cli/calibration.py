@@ -20,7 +20,7 @@ from dembound.cli.app import (
     text_for,
     writable,
 )
-from dembound.cli.console import compact_table, out
+from dembound.cli.console import compact_table, out, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
 from dembound.studies.asked import Calibrating
@@ -96,7 +96,7 @@ def calibrate_sides(
         folder = folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}")
         _leave(found, one.summary(), folder, [folder / "calibration.h5"])
     write_text(target, edited(text, changes_of(found)))
-    out.print(f"wrote {target}")
+    print_written(target)
 
 
 def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> list[str]:
@@ -149,9 +149,8 @@ def _leave(found: Sequence[Calibration], summary: Mapping[str, Any], folder: Pat
     for each, record in zip(found, records, strict=True):
         make_folder(record.parent)
         each.write(record)
-        out.print(f"wrote {record}")
     write_json(folder / "summary.json", summary)
-    out.print(f"wrote {folder / 'summary.json'}")
+    print_written(*records, folder / "summary.json")
     picture = folder / "convergence.png"
     remove(picture)  # one of an earlier calibration with another method
     if found[0].beta:

@@ -12,7 +12,7 @@ from rich.table import Table
 from typer import Argument, Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, writable
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import compact_table, err, out, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.cli.results import results_file
 from dembound.cli.signal_options import SignalOptions, of_file
@@ -56,16 +56,9 @@ class EvaluationOptions:
         from dembound.gauge.gauge_io import read_free_end
         from dembound.gauge.spalling import evaluate
 
-        return evaluate(
-            gauge,
-            spall=self.spall,
-            free_end=None if self.free_end is None else read_free_end(path, self.free_end),
-            estimate=self.estimate,
-            count=self.peaks,
-            pulse_end=self.pulse_end,
-            speed=self.wave_speed,
-            coefficient=self.attenuation,
-        )
+        free_end = None if self.free_end is None else read_free_end(path, self.free_end)
+        known = {"speed": self.wave_speed, "coefficient": self.attenuation, "pulse_end": self.pulse_end}
+        return evaluate(gauge, spall=self.spall, free_end=free_end, estimate=self.estimate, count=self.peaks, **known)
 
 
 @app.command("gauge", rich_help_panel=MORE)
@@ -231,7 +224,7 @@ def hopkinson(
         leave(plot_hopkinson(faces, found), output, title)
     if table is not None:
         found.write(table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def _specimen_overview(found: Specimen, tolerance: float) -> Table:

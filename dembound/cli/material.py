@@ -13,7 +13,7 @@ from typer import Argument, Option
 
 from dembound.cli.app import MORE, Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place, text_for
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import ending_with, err, out, print_lines, print_rows
+from dembound.cli.console import ending_with, err, out, print_lines, print_rows, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.cli.sweep import FAILED, cells_of, print_failed, shown
 from dembound.errors import CaseError
@@ -179,8 +179,7 @@ def _leave(tested: Tested, ratios: Sequence[Ratio]) -> None:
     """Write tables, cases and pictures, printing each."""
     from dembound.studies.laboratory.tables import write_tables
 
-    for path in write_tables(tested, ratios):
-        out.print(f"wrote {path}")
+    print_written(*write_tables(tested, ratios))
     if not tested.done:
         return
     from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
@@ -227,10 +226,7 @@ def match_strengths(
         err.print(f"{case.name}: {test}, {sample.in_words}")
         return sample
 
-    material, options = case.material, loading.options()
-    cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    spread = strengths.spread_of(material.pb_scatter)
-    search, done = strengths.Search(wanted, cohesion, spread, material.pb_mcf), []
+    options, search, done = loading.options(), strengths.Search.of(case.material, wanted), []
     said = f"{case.name}: stopped; the same command continues what is left"
     with ending_with(said), shown(case.name, "samples") as report:
         measure = strengths.measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
@@ -245,7 +241,7 @@ def match_strengths(
     comments = [f"{FOUND} {words}; {loading.sample(tested, test).in_words}" for test, words in found.items()]
     text = edited(text_for(target, path, case, settings), keys)
     write_text(target, commented(text, "material.pb_ten", comments, FOUND))
-    out.print(f"wrote {target}")
+    print_written(target)
     if best.deviation(wanted) > strengths.CLOSE:
         missed = ", ".join(f"{test} is {strengths.excess_in_words(test, best, wanted)}" for test in wanted)
         said = f"no trial of {len(done)} is within {percent(strengths.CLOSE)}; written is the best one"
@@ -255,12 +251,10 @@ def match_strengths(
 
 def _ratio_of_samples(material: Material) -> float | None:
     """The ratio of compressive and tensile strength to expect of samples; None without both strengths of bonds."""
-    from dembound.studies.laboratory.strengths import Search, spread_of
+    from dembound.studies.laboratory.strengths import Search
 
-    if material.pb_ten is None or material.pb_coh is None:
-        return None
-    spread = spread_of(material.pb_scatter)
-    return Search({}, material.pb_coh / material.pb_ten, spread, material.pb_mcf).expected_ratio()
+    has_both = material.pb_ten is not None and material.pb_coh is not None
+    return Search.of(material, {}).expected_ratio() if has_both else None
 
 
 SEEDS = 8

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from typer import Argument, Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, ending_in, writable
-from dembound.cli.console import INTERVAL, err, out
+from dembound.cli.console import err, out, print_written, seldom
 from dembound.cli.options import (
     ComponentOfMotion,
     Exaggerated,
@@ -81,15 +80,9 @@ def movie(
     from dembound.results.reader import understood
 
     file = results_file(results)
+    names = (monitor or None) if histories else []
     with understood(file):
-        shown = movie_of(
-            file,
-            field=field,
-            exaggerate=exaggerate,
-            monitors=(monitor or None) if histories else [],
-            every=every,
-            pixels=size,
-        )
+        shown = movie_of(file, field=field, exaggerate=exaggerate, monitors=names, every=every, pixels=size)
         with _counted(len(shown)) as progress:
             write_movie(shown, output, fps, progress)
     size_in_bytes = sum(path.stat().st_size for path in [output, *output.glob("*.png")])
@@ -99,14 +92,12 @@ def movie(
 @contextmanager
 def _counted(frames: int) -> Iterator[Callable[[int], None]]:
     """Print how many frames are drawn: on a terminal in one line, else every ten seconds."""
-    said = time.monotonic()
+    is_due = seldom()
 
     def count(drawn: int) -> None:
-        nonlocal said
         if err.is_terminal:
             status.update(f"frame {drawn} of {frames}")
-        elif time.monotonic() - said >= INTERVAL:
-            said = time.monotonic()
+        elif is_due():
             err.print(f"frame {drawn} of {frames}")
 
     with err.status("") as status:
@@ -170,7 +161,7 @@ class SignalsShown:
         found = amplification(file, self.monitor or None, self.reference)
         leave(plot_surface(file, found, self.component), output, title)
         write_csv(table := output.with_suffix(".csv"), found.rows())
-        out.print(f"wrote {table}")
+        print_written(table)
         for line in found.notes(COMPONENTS[self.component or "both"]):
             out.print(line)
 

@@ -27,7 +27,7 @@ from dembound.cli.app import (
     require_one_place,
 )
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import INTERVAL, ending_with, err, out, print_rows
+from dembound.cli.console import ending_with, err, out, print_rows, print_written, seldom
 from dembound.cli.options import leave
 from dembound.errors import CaseError
 from dembound.studies.asked import Method
@@ -98,13 +98,8 @@ def sweep(
     require_one_place(scheduler, processes)
     loaded = load_case(case, changes, name)
     table = loaded.sweep
-    options = Options(
-        action=action or table.action,
-        method=method or table.method,
-        processes=processes or table.processes,
-        scheduler=scheduler,
-        anew=anew,
-    )
+    chosen = action or table.action, method or table.method, processes or table.processes
+    options = Options(*chosen, scheduler, anew)
     if method and options.action != "calibrate":
         raise CaseError(["--method: is for --action calibrate"])
     varied = variations(parsed_options(vary) if vary else table.vary, table.together if together is None else together)
@@ -132,19 +127,13 @@ def shown(
 
     members : what they are called. under_way : more words on those under way.
     """
-    began = said = time.monotonic()
+    began, is_due = time.monotonic(), seldom()
 
     def line(standing: Standing) -> str:
         return f"{name}: {_in_words(standing, time.monotonic() - began, members, under_way(standing))}"
 
-    def say(standing: Standing) -> None:
-        nonlocal said
-        if (now := time.monotonic()) - said >= INTERVAL:
-            said = now
-            err.print(line(standing))
-
     if not err.is_terminal:
-        yield say
+        yield lambda standing: err.print(line(standing)) if is_due() else None
         return
     with err.status(f"{name}: preparing") as status:
         yield lambda standing: status.update(line(standing))
@@ -229,8 +218,7 @@ def _leave(swept: Swept, folder: Path, title: str | None) -> None:
     from dembound.files import remove
     from dembound.studies.sweep.tables import write_tables
 
-    for path in write_tables(swept, folder):
-        out.print(f"wrote {path}")
+    print_written(*write_tables(swept, folder))
     remove(folder / "sweep.png")
     if swept.shown:
         from dembound.plot.stability import plot_sweep

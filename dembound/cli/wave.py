@@ -86,15 +86,9 @@ class ProcessingOptions:
         kept = windowed(channel, self.begin, self.end)
         base = Processing() if self.raw else usual(kept.time_step * len(kept.values))
         high = base.filters.high_pass if self.high_pass is None else self.high_pass or None
-        return Processing(
-            self.begin,
-            self.end,
-            self.baseline or base.baseline,
-            base.taper if self.taper is None else self.taper,
-            replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order),
-            self.pga,
-            self.scale,
-        )
+        filters = replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order)
+        baseline, taper = self.baseline or base.baseline, base.taper if self.taper is None else self.taper
+        return Processing(self.begin, self.end, baseline, taper, filters, self.pga, self.scale)
 
 
 @dataclass(frozen=True)
@@ -277,15 +271,11 @@ def _table(channels: Sequence[Channel], motions: Sequence[Motion], options: Proc
         table.add_column(Text(head), justify="left" if head == HEADS[0] else "right")
     for channel, motion in zip(channels, motions, strict=True):
         found, (low, high) = measures_of(motion), usable_band(channel, options.of(channel))
-        table.add_row(
-            motion.component or "-",
-            f"{len(motion.time)}",
-            f"{1.0 / motion.time_step:.4g}",
-            *(f"{value:.3g}" for value in (found.pga, found.pga / STANDARD_GRAVITY, found.pgv, found.pgd, found.arias)),
-            f"{found.duration:.3g}",
-            *(f"{value + 0.0:.1g}" for value in (found.final_velocity, found.final_displacement)),
-            f"{low:.2g}-{high:.2g}" if low < high else "none",
-        )
+        sampling = f"{len(motion.time)}", f"{1.0 / motion.time_step:.4g}"
+        sizes = found.pga, found.pga / STANDARD_GRAVITY, found.pgv, found.pgd, found.arias, found.duration
+        left = (f"{value + 0.0:.1g}" for value in (found.final_velocity, found.final_displacement))
+        band = f"{low:.2g}-{high:.2g}" if low < high else "none"
+        table.add_row(motion.component or "-", *sampling, *(f"{value:.3g}" for value in sizes), *left, band)
     return table
 
 

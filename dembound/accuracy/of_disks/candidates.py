@@ -234,10 +234,7 @@ def _other_sides(case: DiskCase) -> Named:
             changes[f"boundary.{side}"] = {"type": name, **extra} | ({} if name == "free" else factors)
         if {table.type for table in silent.values()} != {name} and is_valid(case, changes):
             yield f"{_listed(silent)} {name}", changes
-    for sides in (
-        silent,
-        absorbing,
-    ):  # a continuum beyond the first of both that allows one; waves enter as in the case
+    for sides in (silent, absorbing):  # a continuum beyond the first that allows one; waves enter as in the case
         changes = {f"boundary.{side}": continuum_beyond(table) for side, table in sides.items()}
         if not all(table.is_outside for table in sides.values()) and is_valid(case, changes):
             yield f"{_listed(sides)} outside", changes

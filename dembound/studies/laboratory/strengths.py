@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.types import LAWS
 from dembound.disks.material.constants import drawn
@@ -130,6 +131,12 @@ class Search:
     cohesion: float = 1.0
     spread: float = 0.0
     moments: float = 1.0
+
+    @classmethod
+    def of(cls, material: Material, targets: Mapping[TestName, float]) -> Search:
+        """The search that begins with the bonds of a material."""
+        ten, coh = material.pb_ten, material.pb_coh
+        return cls(targets, coh / ten if ten and coh else 1.0, spread_of(material.pb_scatter), material.pb_mcf)
 
     @property
     def ratio(self) -> float | None:
