@@ -184,19 +184,17 @@ def _write(found: Budget, recorded: Motions, path: Path) -> None:
         for name, motion in found.motions.items():
             group = file.create_group(f"histories/{name}")
             write(group, "time", motion.time, "s")
-            own = recorded[name].at(motion.time)
             for quantity in found.quantities(name):
-                _write_quantity(group, found, own, name, quantity)
+                _write_quantity(group.create_group(quantity), found, recorded[name].at(motion.time), name, quantity)
         if found.repeat is not None:
             group = file.create_group("repeat")
             write(group, "time", found.repeat.other.times, "s")
             write(group, "position", found.repeat.other.places, "m")
 
 
-def _write_quantity(group: Any, found: Budget, recorded: History, name: str, quantity: str) -> None:
+def _write_quantity(inner: Any, found: Budget, recorded: History, name: str, quantity: str) -> None:
     """The errors of a quantity by cause, its band, and the corrected history."""
     unit = UNITS[quantity]
-    inner = group.create_group(quantity)
     describe(inner, {"total": found.total(name, quantity).value})
     for cause in found.causes.found:
         error = cause.parts.get(name, {}).get(quantity)

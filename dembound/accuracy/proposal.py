@@ -176,7 +176,7 @@ def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str])
     if (level := float(f"{LEVEL_SHARE * bound:.3g}")) > default:
         levels[level] = {"run.silent_level": level}
     found = [_ended(case, motion, {"run.until": "silent", **change}) for change in levels.values()]
-    return sorted((each for each in found if each is not None), key=lambda each: each.share)
+    return sorted(filter(None, found), key=lambda each: each.share)
 
 
 def _ended(case: Case, motion: Motions, changes: Mapping[str, object]) -> EarlierEnd | None:

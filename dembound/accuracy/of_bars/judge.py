@@ -117,16 +117,10 @@ class BarJudge(Judge[BarCase, BarScene]):
         if not any(cells.values()):
             return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
         shift = longer["left"]
-        monitors = tuple(
-            monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
-        )
-        larger = replace(
-            case,
-            bar=_lengthened(bar, longer, length),
-            monitor=monitors,
-            run=same_step(case.run, step),
-            name=f"{case.name}_extended",
-        )
+        moved = [(monitor, min(monitor.position + shift, length)) for monitor in case.monitor]
+        monitors = tuple(monitor.model_copy(update={"position": place}) for monitor, place in moved)
+        longer_bar, run = _lengthened(bar, longer, length), same_step(case.run, step)
+        larger = replace(case, bar=longer_bar, monitor=monitors, run=run, name=f"{case.name}_extended")
         return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))
 
     def exact(self, case: BarCase) -> PulseInBar | None:

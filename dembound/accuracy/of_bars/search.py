@@ -35,7 +35,6 @@ from dembound.formulas.bars.rods import Window
 from dembound.formulas.cause import Cause, Causes
 from dembound.formulas.history import History, Motions
 from dembound.methods.rod import Range
-from dembound.results.compare import at_times
 from dembound.results.histories import in_words
 
 MARGIN = 2.0
@@ -233,13 +232,8 @@ class Motion:
         if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
             return 0.0
         own, between = self._exact, self.exact.at(self._motions.window.finer(BETWEEN))
-        errors = {
-            name: {
-                q: at_times(own[name].time, own[name].values[q], each.time) - values
-                for q, values in each.values.items()
-            }
-            for name, each in between.items()
-        }
+        seen = {name: own[name].at(each.time).values for name, each in between.items()}
+        errors = {n: {q: seen[n][q] - values for q, values in each.values.items()} for n, each in between.items()}
         return Budget(between, Causes([Cause("", HOW, errors)])).worst().share.value
 
     @cached_property
@@ -315,13 +309,9 @@ class Motion:
     @cached_property
     def recorded(self) -> dict[str, History]:
         """The motion as a run records it, without the stress of end nodes, which is recorded half a spacing inside."""
-        ends = (0, self.choice.scene.count - 1)
-        at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
-        return {
-            name: replace(
-                own,
-                place=np.array([self.exact.places[name], 0.0]),
-                values={q: values for q, values in own.values.items() if q != "stress" or name not in at_ends},
-            )
-            for name, own in self._own.items()
-        }
+        found = {}
+        for name, own in self._own.items():
+            at_end = self._motions.nodes[name] in (0, self.choice.scene.count - 1)
+            values = {q: values for q, values in own.values.items() if q != "stress" or not at_end}
+            found[name] = replace(own, place=np.array([self.exact.places[name], 0.0]), values=values)
+        return found
