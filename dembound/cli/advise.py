@@ -117,9 +117,8 @@ def advise_cases(
         elif not found.best[bound].holds(bound):
             missed.append(_missed(case, found, bound))
         elif found.best[bound].choice.changes:
-            _write(
-                found.best[bound].case, text_for(targets[number], path, case, changes), found, bound, targets[number]
-            )
+            target = targets[number]
+            _write(found.best[bound], text_for(target, path, case, changes), target)
     if missed:
         raise NotAccurateError("\n".join(missed))
 
@@ -200,7 +199,7 @@ def _missed(case: Case, found: Advice, bound: float) -> str:
     return "\n".join([*said, *best.choice.toml])
 
 
-def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:
+def _write(best: Proposal, text: str, target: Path) -> None:
     """Write the text of a case with the changes of the best choice, after reading and planning it."""
     from dembound.accuracy.choice import digest
     from dembound.casefile.edit import edited
@@ -208,10 +207,10 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
     from dembound.running import plan
     from dembound.schemas import loads
 
-    choice = found.best[bound].choice
+    choice = best.choice
     text = edited(text, choice.changes)
     again = loads(text, target.parent, target.stem)
-    if digest(again) != digest(case) and again.keys != case.keys:  # digests of 80 and 80.0 differ
+    if digest(again) != digest(choice.case) and again.keys != choice.case.keys:  # digests of 80 and 80.0 differ
         raise RuntimeError(f"{target}: the text is not that of the choice")
     plan(again)
     write_text(target, text)

@@ -233,20 +233,15 @@ def _sentences(found: Measured) -> list[str]:
         nodes, values = found.continuum
         beside[f"an outside of {nodes:,} nodes"] = values
     for arrival in found.arrivals:
-        share = arrival.sent_back(found.found)
-        if not math.isfinite(share):
-            continue
-        name = arrival.name if arrival.signal is None else f"{arrival.name}, weighted with its spectrum"
-        line = f"{name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
-        lines.append(
-            "; ".join([line, *(f"{other} {_percent(arrival.sent_back(each))}" for other, each in beside.items())])
-        )
+        if math.isfinite(share := arrival.sent_back(found.found)):
+            name = arrival.name if arrival.signal is None else f"{arrival.name}, weighted with its spectrum"
+            line = f"{name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
+            others = [f"{other} {_percent(arrival.sent_back(each))}" for other, each in beside.items()]
+            lines.append("; ".join([line, *others]))
     if found.rock:
         each = " and ".join(f"{_percent(share)} for {kind.upper()} waves" for kind, share in found.rock.items())
-        lines.append(
-            f"the rock itself returns of the amplitude along the normal {each}; dashpots stand for it there alone, and "
-            "what rock returns at other angles is not predicted"
-        )
+        alone = "dashpots stand for it there alone, and what rock returns at other angles is not predicted"
+        lines.append(f"the rock itself returns of the amplitude along the normal {each}; {alone}")
     highest = found.found.frequencies.max()
     gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
     if gaps:

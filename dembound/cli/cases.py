@@ -218,9 +218,8 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
 
     target = Folder(output, name)
     if record.parent.resolve() in (target.final.resolve(), target.partial.resolve()):
-        raise CaseError(
-            [f"--set: would replace {record}, from which the case is read; give another --name or --output"]
-        )
+        advice = "give another --name or --output"
+        raise CaseError([f"--set: would replace {record}, from which the case is read; {advice}"])
 
 
 def _print_replaced(case: Case, output: Path) -> None:

@@ -286,12 +286,10 @@ def _lines(found: Sequence[Stability]) -> tuple[list[Line], list[Line]]:
 
 def _fail_if_unstable(found: Sequence[Stability]) -> None:
     """Raise RunError, with a line for each law or stage that is not stable at the case's own step."""
-    lines = [
-        f"{each.trial.name}: not stable at the case's own step of {each.trial.step:.6g} s; the largest stable one is "
-        f"{each.measured:.6g} s"
-        for each in found
-        if not each.is_stable
-    ]
+    lines = []
+    for each in (each for each in found if not each.is_stable):
+        said = f"not stable at the case's own step of {each.trial.step:.6g} s"
+        lines.append(f"{each.trial.name}: {said}; the largest stable one is {each.measured:.6g} s")
     if lines:
         raise RunError("\n".join(lines))
 
@@ -315,12 +313,9 @@ def packing(
         figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
     else:
         scenes = {case.name: build(case) for case in loaded}
-        figure = plot_patterns(
-            {
-                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
-                for name, scene in scenes.items()
-            }
-        )
+        edges = {name: _edge_of(scene, side.value).nodes for name, scene in scenes.items()}
+        bodies = {name: scene.assembly for name, scene in scenes.items()}
+        figure = plot_patterns({name: (body.positions, body.radii, edges[name]) for name, body in bodies.items()})
     leave(figure, output, title)
 
 

@@ -282,14 +282,11 @@ def with_bonds(case: DiskCase, pb_ten: float, pb_coh: float) -> DiskCase:
     return changed
 
 
-def measure_in(
-    make: Callable[[DiskCase, TestName], Sample],
-    case: DiskCase,
-    seeds: int,
-    options: Options,
-    folder: Path,
-    report: Report,
-) -> Measure:
+Make = Callable[[DiskCase, TestName], Sample]
+"""Cuts the sample of a test from a case."""
+
+
+def measure_in(make: Make, case: DiskCase, seeds: int, options: Options, folder: Path, report: Report) -> Measure:
     """The strengths of samples that `make` cuts from a case; every trial has a folder of its own within a folder.
 
     Raises RunError when a run has failed or has no peak, RecordError for a folder that is a link.
