@@ -161,8 +161,7 @@ def chosen(
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
-    said = [_line(best), *(best.choice.toml or ["the case as it is"])]
-    print_lines(*(f"{case.name}: {line}" for line in said))
+    print_lines(*(f"{case.name}: {line}" for line in (_line(best), *(best.choice.toml or ["the case as it is"]))))
     return best.case
 
 

@@ -181,10 +181,7 @@ Name = Annotated[str | None, Option(help="Name of the results folder; by default
 class Side(StrEnum):
     """The sides of a scene; an enumeration, as lists of options need one."""
 
-    left = "left"
-    right = "right"
-    bottom = "bottom"
-    top = "top"
+    left, right, bottom, top = "left", "right", "bottom", "top"
 
 
 @app.callback(invoke_without_command=True)

@@ -87,37 +87,29 @@ def boundary(
     A left or right side beside layers has one of each for every layer.
     """
     one_thread_for_matrices()  # before numpy is imported
-    from dembound.disks.reflection import (
-        ANGLES,
-        FREQUENCIES,
-        compare_types,
-        layers_beside,
-        measure_side,
-        measured_sides,
-        seconds_of,
-    )
+    from dembound.disks import reflection
 
     prepare_computing(None)
     if types and quick:
         raise CaseError(["--quick: is not possible with --type; leave it out"])
     loaded = load_disks(case, changes)
-    chosen = [side.value for side in sides] if sides else measured_sides(loaded)
+    chosen = [side.value for side in sides] if sides else reflection.measured_sides(loaded)
     nowhere: tuple[str | None, ...] = (None,)
-    parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
-    given, hertz = sorted(set(angles or ())), sorted(set(frequencies or ()))
-    count, asked = len(hertz) or FREQUENCIES, (len(given) or len(ANGLES)) if not types else len(given or COMPARED)
-    each = 0.0 if quick else seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
-    count = _within(longest, count, each, loaded.name, may_be_fewer=not (hertz or types))
+    parts = [(side, layer) for side in chosen for layer in (*reflection.layers_beside(loaded, side),) or nowhere]
+    given = sorted(set(angles or (COMPARED if types else reflection.ANGLES)))
+    hertz, may_be_fewer = sorted(set(frequencies or ())), not (frequencies or types)
+    each = 0.0 if quick else reflection.seconds_of(loaded, len(parts) * max(1, len(types or ())), len(given), 1)
+    count = _within(longest, len(hertz) or reflection.FREQUENCIES, each, loaded.name, may_be_fewer=may_be_fewer)
     for side, layer in parts:
         report = _report(side if layer is None else f"{side}, in {layer}")
         if types:
             tables = [_table(text) for text in types]
-            found = compare_types(loaded, side, tables, given or COMPARED, frequencies or (), report, layer)
+            found = reflection.compare_types(loaded, side, tables, given, frequencies or (), report, layer)
             words = f"Energy that types of the {side} side of {loaded.name} send back"
             figure = _compared(*found, words if layer is None else f"{words} in {layer}")
         else:
-            measured = measure_side(
-                loaded, side, given or ANGLES, hertz or count, report=report, quick=quick, layer=layer
+            measured = reflection.measure_side(
+                loaded, side, given, hertz or count, report=report, quick=quick, layer=layer
             )
             figure = _measured(measured, loaded.name, side, layer)
         ending = "" if len(parts) == 1 else f"_{side}" if layer is None else f"_{side}_{layer}"

@@ -27,7 +27,7 @@ from dembound.cli.app import (
     prepare_computing,
 )
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import compact_table, err, out, print_written
 from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError, RunError
 
@@ -124,7 +124,7 @@ def dispersion(
     leave(plot_dispersion(shown, _simulated(shown) if check else ()), output, title)
     if table is not None:
         write_table(shown, table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def _refuse(options: Mapping[str, object], why: str) -> None:
@@ -175,10 +175,6 @@ def _simulated(shown: Sequence[Lattice]) -> list[Points]:
     return points
 
 
-STRENGTH = "strength.csv"
-"""Table of --strength by default."""
-
-
 @app.command("stability", rich_help_panel=MORE)
 def stability(
     case: OneCase,
@@ -225,7 +221,9 @@ def stability(
         raise CaseError([f"--output: is {output}, must end in {ending}"])
     prepare_computing(threads)
     if strength:
-        measure_strength(load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path(STRENGTH))
+        measure_strength(
+            load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path("strength.csv")
+        )
         return
     from dembound.plot.stability import plot_stability
     from dembound.studies.stability import measure

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_type_hi
 from typer import Option
 
 from dembound.cli.app import Side, writable
-from dembound.cli.console import out
+from dembound.cli.console import print_written
 from dembound.studies.asked import Asked
 
 if TYPE_CHECKING:
@@ -70,12 +70,12 @@ def leave(figure: Figure, picture: Path, title: str | None = None, table: Path |
     from dembound.plot.style import save
 
     save(figure, picture, title)
-    out.print(f"wrote {picture}")
+    print_written(picture)
     if table is not None:
         from dembound.plot.table import write_lines
 
         write_lines(figure, table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def names_of(choices: Any) -> str:

@@ -10,7 +10,7 @@ from typer import Argument, Option
 
 from dembound import shipped
 from dembound.cli.app import MORE, app, writable
-from dembound.cli.console import out
+from dembound.cli.console import out, print_written
 from dembound.errors import CaseError
 from dembound.files import write_text
 from dembound.starting import DEFAULT, ENDING, names, starting_point, titles
@@ -111,7 +111,7 @@ def schema(
         typer.echo(_schema(), nl=False)
         return
     write_text(output, _schema())
-    out.print(f"wrote {output}")
+    print_written(output)
 
 
 @cases.callback()
@@ -136,8 +136,7 @@ def copy(
     folder: Annotated[Path, Argument(metavar="FOLDER", help="Where to.")] = Path(),
 ) -> None:
     """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
-    for path in shipped.copy(name, folder):
-        out.print(f"wrote {path}")
+    print_written(*shipped.copy(name, folder))
 
 
 def _print_titles(titles: Mapping[str, str]) -> None:

@@ -152,10 +152,8 @@ def _in_words(standing: Standing, elapsed: float, members: str = "members", more
 
 def _duration(seconds: float) -> str:
     """A time in s, min or h."""
-    for unit, size in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} s"
+    unit, size = next((each for each in (("h", 3600.0), ("min", 60.0)) if seconds >= 2.0 * each[1]), ("s", 1.0))
+    return f"{seconds / size:.0f} {unit}"
 
 
 def _print(swept: Swept) -> bool:

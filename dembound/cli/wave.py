@@ -37,8 +37,7 @@ HEADS = (
 class Kind(StrEnum):
     """Kinds of waves; an enumeration, as lists of options need one."""
 
-    s = "s"
-    p = "p"
+    s, p = "s", "p"
 
 
 Damping = Literal["as_run", "hysteretic", "constant_q"]
