@@ -157,12 +157,9 @@ class Budget:
         """
         recorded = self.quantities(monitor)
         counted = [quantity for quantity in recorded if monitor in self._loud[quantity]] or recorded
-        totals = {quantity: self.total(monitor, quantity, of) for quantity in counted}
-        return max(
-            ((q, share) for q, share in totals.items() if share.is_known),
-            key=lambda each: each[1].upper,
-            default=("", Share(math.nan, math.nan)),
-        )
+        totals = [(quantity, self.total(monitor, quantity, of)) for quantity in counted]
+        known = [each for each in totals if each[1].is_known]
+        return max(known, key=lambda each: each[1].upper, default=("", Share(math.nan, math.nan)))
 
     def worst(self, of: Truth | None = None) -> Worst:
         """The largest error of all quantities at monitors whose motion is not negligible; 0 without such monitors."""
@@ -199,19 +196,16 @@ class Budget:
 
     def summary(self) -> dict[str, Any]:
         """Totals and shares by monitor, quantity and cause, and how they were found, as plain JSON values."""
-        known = [cause for cause in self.causes.found if cause.how != "unknown"]
+        facts, causes = ("how", "words", "of_disks", "factor"), self.causes
+        known = [cause for cause in causes.found if cause.how != "unknown"]
         return {
             "of": self.of,
             "monitors": {name: dict(self._of_monitor(name)) for name in self.motions},
-            "causes": {
-                each.name: {"how": each.how, "words": each.words, "of_disks": each.of_disks, "factor": each.factor}
-                for each in known
-            },
-            "not_estimated": [*(f"{each.name}: {each.words}" for each in self.causes.unknown), *self.causes.limits],
-            "notes": list(self.causes.notes),
+            "causes": {each.name: {fact: getattr(each, fact) for fact in facts} for each in known},
+            "not_estimated": [*(f"{each.name}: {each.words}" for each in causes.unknown), *causes.limits],
+            "notes": list(causes.notes),
             "repeat": None if self.repeat is None else self.repeat.summary(),
-            "cost": self.causes.cost,
-            "cpu_seconds": self.cpu_seconds,
+            **{"cost": causes.cost, "cpu_seconds": self.cpu_seconds},
         }
 
     def _of_monitor(self, name: str) -> Iterator[tuple[str, dict[str, Any]]]:

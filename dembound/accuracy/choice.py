@@ -97,7 +97,8 @@ def _differences(old: Any, new: Any, path: Path) -> Iterator[tuple[Path, Any]]:
     if old == new:
         return
     before, after = _named(old), _named(new)
-    if path and not _may_be_changed_inside(before, after):
+    are_tables = isinstance(before, Mapping) and isinstance(after, Mapping)
+    if path and not (are_tables and before.keys() <= after.keys()):
         yield path, new
         return
     yield from (((*path, key), None) for key in before if key not in after)
@@ -106,11 +107,6 @@ def _differences(old: Any, new: Any, path: Path) -> Iterator[tuple[Path, Any]]:
             yield from _differences(before[key], value, (*path, key))
         elif value != {}:  # an empty table is one that was left out
             yield (*path, key), value
-
-
-def _may_be_changed_inside(old: Any, new: Any) -> bool:
-    """Whether both are tables, and the new one has all keys of the old one."""
-    return isinstance(old, Mapping) and isinstance(new, Mapping) and old.keys() <= new.keys()
 
 
 def _named(value: Any) -> Any:
@@ -149,9 +145,9 @@ def value_at(case: Case, key: str) -> Any:
 def _inner(table: Any, name: str, key: str) -> Any:
     """The value with this name in a table."""
     if isinstance(table, Sequence) and not isinstance(table, str):
-        table = {str(number): each for number, each in enumerate(table, start=1)} | (
-            _named(list(table)) if isinstance(_named(list(table)), Mapping) else {}
-        )
+        named = _named(list(table))
+        numbered = {str(number): each for number, each in enumerate(table, start=1)}
+        table = {**numbered, **(named if isinstance(named, Mapping) else {})}
     if not isinstance(table, Mapping) or name not in table:
         known = f"; here: {', '.join(table)}" if isinstance(table, Mapping) and table else ""
         raise CaseError([f"--keep: {key} is no key of this case, at {name}{known}"])
@@ -241,11 +237,8 @@ def combinations(case: Case, vary: Mapping[str, Sequence[Any]]) -> dict[str, dic
     """All combinations of the keys' values, by name; raises CaseError if they are more than a record may have."""
     if (count := math.prod(map(len, vary.values()))) > MOST_MEMBERS:
         raise CaseError([f"vary: makes {count:,} choices, must be {MOST_MEMBERS:,} or less"], case.name)
-    return {
-        label(case, changes): changes
-        for values in product(*vary.values())
-        for changes in [dict(zip(vary, values, strict=True))]
-    }
+    rows = [dict(zip(vary, values, strict=True)) for values in product(*vary.values())]
+    return {label(case, changes): changes for changes in rows}
 
 
 def is_valid(case: Case, changes: Mapping[str, Any], use: Callable[[Any], object] = bool) -> bool:
@@ -298,16 +291,12 @@ def parsed_options(options: Sequence[str]) -> dict[str, list[Any]]:
             raise CaseError([f"--vary: is {option}, must be KEY=VALUE,VALUE,…, e.g. packing.radius=0.25,0.5"])
         if key in found:
             raise CaseError([f"--vary: has {key} twice, give all its values once"])
-        found[key] = [each for value in values for each in _expanded(value_of(value, f"--vary {key}"), key)]
+        given = [value_of(value, f"--vary {key}") for value in values]
+        try:
+            found[key] = [each for value in given for each in range_of(value) or [value]]
+        except ValueError as error:
+            raise CaseError([f"--vary: {key}: {error}"]) from None
     return found
-
-
-def _expanded(value: Any, key: str) -> list[Any]:
-    """The numbers of a range, or the value itself."""
-    try:
-        return range_of(value) or [value]
-    except ValueError as error:
-        raise CaseError([f"--vary: {key}: {error}"]) from None
 
 
 def _split(text: str) -> Iterator[str]:

@@ -14,9 +14,8 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import value_at
 from dembound.accuracy.judge import judge_of
-from dembound.accuracy.proposal import Advice, Watch
+from dembound.accuracy.proposal import Advice, Request, Watch
 from dembound.accuracy.repeat import Cracked, repeated
-from dembound.accuracy.runner import BUDGET, SHORT
 from dembound.casefile import Case
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.files import require_writable
@@ -85,12 +84,7 @@ def _estimated(
 
 
 def _causes(
-    case: Case,
-    recorded: Motions,
-    until: float,
-    summary: Mapping[str, Any],
-    watch: Watch | None,
-    longest: float | None,
+    case: Case, recorded: Motions, until: float, summary: Mapping[str, Any], watch: Watch | None, longest: float | None
 ) -> Causes:
     """The causes of the error of a run up to its first break, at `until` (s)."""
     broken = [] if case.run.duration < until else [f"motion after {until:.4g} s, when the first bond broke"]
@@ -116,8 +110,7 @@ def causes_of(
     the run, s. work : of the run, in the unit of its kind of body; companions take a tenth of it, or `SHORT`, if
     possible. watch : told of what is done. longest : CPU seconds that they may take, if that is more than by default.
     """
-    most = max(SHORT, BUDGET * work)
-    return judge_of(case).causes(case, recorded, time_step, work, most, watch or Watch(), longest)
+    return judge_of(case).causes(case, recorded, time_step, work, watch or Watch(), longest)
 
 
 def estimate_if_asked(case: Case, folder: Path) -> str:
@@ -191,19 +184,17 @@ def _write(found: Budget, recorded: Motions, path: Path) -> None:
         for name, motion in found.motions.items():
             group = file.create_group(f"histories/{name}")
             write(group, "time", motion.time, "s")
-            own = recorded[name].at(motion.time)
             for quantity in found.quantities(name):
-                _write_quantity(group, found, own, name, quantity)
+                _write_quantity(group.create_group(quantity), found, recorded[name].at(motion.time), name, quantity)
         if found.repeat is not None:
             group = file.create_group("repeat")
             write(group, "time", found.repeat.other.times, "s")
             write(group, "position", found.repeat.other.places, "m")
 
 
-def _write_quantity(group: Any, found: Budget, recorded: History, name: str, quantity: str) -> None:
+def _write_quantity(inner: Any, found: Budget, recorded: History, name: str, quantity: str) -> None:
     """The errors of a quantity by cause, its band, and the corrected history."""
     unit = UNITS[quantity]
-    inner = group.create_group(quantity)
     describe(inner, {"total": found.total(name, quantity).value})
     for cause in found.causes.found:
         error = cause.parts.get(name, {}).get(quantity)
@@ -251,5 +242,6 @@ def advise(
         value_at(case, key)
     judge, clock = judge_of(case), Clock(time.process_time)
     with clock.with_compiling(), clock.of("advise"):
-        found = judge.advise(case, bounds, of or judge.truth(case), kept, longest, seeds, watch or Watch())
+        asked = Request(bounds, of or judge.truth(case), kept, longest, seeds, watch or Watch())
+        found = judge.advise(case, asked)
     return replace(found, cpu_seconds=clock.seconds["advise"])

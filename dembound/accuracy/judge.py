@@ -10,7 +10,7 @@ from pkgutil import resolve_name
 from typing import Any, ClassVar, Generic, TypeVar
 
 from dembound.accuracy.choice import Choice, Named
-from dembound.accuracy.proposal import Advice, Watch
+from dembound.accuracy.proposal import Advice, Request, Watch
 from dembound.accuracy.reference import Exact, FinerRun
 from dembound.accuracy.runner import Run
 from dembound.boundaries import SIDES
@@ -112,20 +112,13 @@ class Judge(ABC, Generic[C, S]):
 
     @abstractmethod
     def causes(
-        self,
-        case: C,
-        recorded: Motions,
-        time_step: float,
-        work: float,
-        most: float,
-        watch: Watch,
-        longest: float | None = None,
+        self, case: C, recorded: Motions, time_step: float, work: float, watch: Watch, longest: float | None
     ) -> Causes:
         """The causes of the error of a run.
 
         case : to the end of the run. recorded : by monitor, up to the time until which errors are estimated. time_step
-        (s), work (in the unit of its kind) : of the run. most : work that is spent, if possible. watch : told of what
-        is done. longest : CPU seconds that companions may take, if that is more than by default.
+        (s), work (in the unit of its kind) : of the run. watch : told of what is done. longest : CPU seconds that
+        companions may take, if that is more than by default.
         """
 
     def require_known(self, case: C) -> None:
@@ -144,21 +137,8 @@ class Judge(ABC, Generic[C, S]):
         yield from ()
 
     @abstractmethod
-    def advise(
-        self,
-        case: C,
-        bounds: Sequence[float],
-        of: Truth,
-        kept: Sequence[str],
-        longest: float | None,
-        seeds: int,
-        watch: Watch,
-    ) -> Advice:
+    def advise(self, case: C, asked: Request) -> Advice:
         """The errors of a case, and the cheapest choices for several bounds.
-
-        kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: the default.
-        seeds : random packings that are run to find the scatter of the case's motion; 1: none. watch : told of what is
-        done, and of what is known before all is.
 
         Raises CaseError for cases whose errors are not known, that do not move at their monitors, and where no choice
         keeps the values of `kept`; for several seeds of a case without any; the errors of building a scene and of runs.
@@ -206,8 +186,7 @@ class Judge(ABC, Generic[C, S]):
 
 def no_seed(case: Case) -> CaseError:
     """The error for a request of other seeds for a case without a random packing."""
-    reason = "the case has no random packing, so that nothing depends on a seed"
-    return CaseError([f"--seeds: {reason}"], case.name)
+    return CaseError(["--seeds: the case has no random packing, so that nothing depends on a seed"], case.name)
 
 
 @cache

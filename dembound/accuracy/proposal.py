@@ -16,7 +16,7 @@ from dembound.accuracy.budget import Budget, Share
 from dembound.accuracy.choice import Choice
 from dembound.casefile import Case
 from dembound.errors import DemboundError
-from dembound.formulas.cause import Cause, Causes
+from dembound.formulas.cause import Cause, Causes, Truth
 from dembound.formulas.history import Motions
 from dembound.interrupts import look
 from dembound.kinds import with_changes
@@ -107,6 +107,23 @@ class Watch:
         """The best choice for an error bound is known; bounds come from the largest to the smallest."""
 
 
+@dataclass(frozen=True)
+class Request:
+    """What advice is asked for.
+
+    bounds : of errors. of : truth to which these are relative. kept : keys that do not change. longest : CPU seconds
+    that the steps of a choice may take; None: the default. seeds : random packings that are run to find the scatter of
+    the case's motion; 1: none. watch : told of what is done, and of what is known before all is.
+    """
+
+    bounds: Sequence[float]
+    of: Truth
+    kept: Sequence[str]
+    longest: float | None
+    seeds: int
+    watch: Watch
+
+
 END = "end"
 """Cause of errors: motion after the end."""
 
@@ -159,7 +176,7 @@ def earlier_ends(case: Case, motion: Motions, bound: float, kept: Sequence[str])
     if (level := float(f"{LEVEL_SHARE * bound:.3g}")) > default:
         levels[level] = {"run.silent_level": level}
     found = [_ended(case, motion, {"run.until": "silent", **change}) for change in levels.values()]
-    return sorted((each for each in found if each is not None), key=lambda each: each.share)
+    return sorted(filter(None, found), key=lambda each: each.share)
 
 
 def _ended(case: Case, motion: Motions, changes: Mapping[str, object]) -> EarlierEnd | None:

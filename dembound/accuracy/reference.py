@@ -143,13 +143,10 @@ def errors(choice: Choice, outcome: Run, reference: Reference, requested: Reques
     peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
     if not max(peaks.values()) > 0.0:
         raise CaseError([f"monitor: the {requested.quantity} is zero in the reference ({reference.sentence})"])
-    found = [
-        replace(
-            _error(name, recorded[name], expected[name], columns[name], requested),
-            rest=reference.rest.get(name, {}).get(requested.quantity, 0.0),
-        )
-        for name in loud_of(peaks, LEAST[requested.quantity])
-    ]
+    found = []
+    for name in loud_of(peaks, LEAST[requested.quantity]):
+        rest = reference.rest.get(name, {}).get(requested.quantity, 0.0)
+        found.append(replace(_error(name, recorded[name], expected[name], columns[name], requested), rest=rest))
     return sorted(found, key=lambda error: -error.total)
 
 

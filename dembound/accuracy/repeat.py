@@ -94,10 +94,9 @@ class Cracked:
         None for bars, in which several bonds break at one place.
         """
         if len(self) > MANY and not self.in_bar:
-            yield (
-                f"{len(self):,} bonds break: which ones, and how they move what is near, is one draw of many; --repeat "
-                f"runs the case again at {SHORTER:g} of the time step and says what remains"
-            )
+            which = "which ones, and how they move what is near, is one draw of many"
+            again = f"--repeat runs the case again at {SHORTER:g} of the time step and says what remains"
+            yield f"{len(self):,} bonds break: {which}; {again}"
 
 
 @dataclass(frozen=True)
@@ -121,13 +120,9 @@ class Repeat:
 
     def summary(self) -> dict[str, Any]:
         """Plain JSON values: both runs, the share of cracks in common, and changes of motion."""
-        return {
-            "this_run": self.own.summary(),
-            "second_run": self.other.summary(),
-            "common": self.common,
-            "within": self.own.reach,
-            "changes": {name: dict(each) for name, each in self.changes.items()},
-        }
+        runs = {"this_run": self.own.summary(), "second_run": self.other.summary()}
+        changes = {name: dict(each) for name, each in self.changes.items()}
+        return runs | {"common": self.common, "within": self.own.reach, "changes": changes}
 
     def lines(self) -> list[str]:
         """Number, place, energy and extent of the cracks in both runs, and the change of motion, in words."""

@@ -18,7 +18,6 @@ from dembound.casefile import Case
 from dembound.casefile.tables import ENDING
 from dembound.formulas.history import History, Motions
 from dembound.motion.kind import Finding, Plan
-from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Clock, Records
 from dembound.running import Progress, Reports, plan, simulation_of
 from dembound.table import Box
@@ -158,25 +157,12 @@ def measure(
         simulation.track(*planned.kind.trackers(simulation))
         with cpu.with_compiling():
             simulation.run(planned.steps)
-    run = replace(_run_of(planned, simulation, records, inside), settled=beginning.summary)
+    scene, kind, stepped = planned.scene, planned.kind, simulation.scene
+    run = Run("", planned.time_step, planned.step_limit, planned.steps, stepped.count, kind.work(simulation))
+    run.threads, run.late = stepped.threads, kind.late(scene) or 0.0
+    run.motions, run.findings = _motions(planned, records), kind.findings(scene, simulation, inside)
+    run.laws, run.settled = tuple(name for name, _ in simulation.state.laws), beginning.summary
     return run, cpu.seconds["step"], wall.seconds["whole"]
-
-
-def _run_of(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Run:
-    """The results of a run that is over."""
-    scene, kind = planned.scene, planned.kind
-    return Run(
-        time_step=planned.time_step,
-        step_limit=planned.step_limit,
-        steps=planned.steps,
-        count=simulation.scene.count,
-        work=kind.work(simulation),
-        threads=simulation.scene.threads,
-        late=kind.late(scene) or 0.0,
-        motions=_motions(planned, records),
-        findings=kind.findings(scene, simulation, inside),
-        laws=tuple(name for name, _ in simulation.state.laws),
-    )
 
 
 def _motions(planned: Plan, records: Records) -> dict[str, History]:
@@ -186,14 +172,9 @@ def _motions(planned: Plan, records: Records) -> dict[str, History]:
     record = np.concatenate(records.records)[::stride]
     times = stride * step * np.arange(len(record))
     motion = planned.stepped.observed(record, times)
-    return {
-        name: History.of(
-            place,
-            times,
-            motion[:, index, :3],
-            motion[:, index, 3:6],
-            motion[:, index, 6] if motion.shape[2] > 6 else None,
-        )
-        for index, (name, place) in enumerate(scene.monitored.items())
-        if name in scene.places  # without the twins in a free-field column
-    }
+    found = {}
+    for index, (name, place) in enumerate(scene.monitored.items()):
+        if name in scene.places:  # without the twins in a free-field column
+            own = motion[:, index]
+            found[name] = History.of(place, times, own[:, :3], own[:, 3:6], own[:, 6] if own.shape[1] > 6 else None)
+    return found

@@ -43,12 +43,9 @@ def in_one_line(causes: Sequence[Cause], motions: Motions) -> str:
 
     Without motions only causes whose sizes do not depend on them are known.
     """
-    sizes = {
-        cause.name: Budget(motions, Causes([cause])).worst().share.value if motions else cause.largest
-        for cause in causes
-        if cause.how != "unknown"
-    }
-    return ", ".join(f"{name} {in_words(size)}" for name, size in sizes.items())
+    known = [cause for cause in causes if cause.how != "unknown"]
+    sizes = [Budget(motions, Causes([cause])).worst().share.value if motions else cause.largest for cause in known]
+    return ", ".join(f"{cause.name} {in_words(size)}" for cause, size in zip(known, sizes, strict=True))
 
 
 def next_step(budget: Budget, results: Path, case: Path | None) -> str:
@@ -123,9 +120,9 @@ def _total(share: Share) -> str:
 def _at_most(totals: Sequence[Share]) -> str:
     """Text of the upper value of the largest total."""
     known = [share for share in totals if share.is_known]
-    if any(share.at_least for share in known):
+    if not known or any(share.at_least for share in known):
         return "of unknown error"
-    return f"at most {in_words(max(share.upper for share in known))}" if known else "of unknown error"
+    return f"at most {in_words(max(share.upper for share in known))}"
 
 
 def _sentences(budget: Budget) -> Iterator[str]:

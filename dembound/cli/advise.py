@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, Cases, Settings, Threads, app, load_case, prepare_computing, text_for
 from dembound.cli.console import err, out, print_lines
@@ -37,7 +37,7 @@ Truth = Literal["disks", "rock"]
 
 Error = Annotated[
     str | None,
-    typer.Option(
+    Option(
         "--error",
         metavar="ERROR",
         help="Largest error of velocity and displacement at all monitors, such as 1% or 0.01. "
@@ -46,7 +46,7 @@ Error = Annotated[
 ]
 Keep = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--keep",
         metavar="KEY",
         help="A key or table that is not changed, e.g. packing.radius or boundary. May be repeated; keys given by "
@@ -55,19 +55,16 @@ Keep = Annotated[
 ]
 Of = Annotated[
     Truth | None,
-    typer.Option(
+    Option(
         "--of",
         help="Errors of these disks as the material, or of the rock, for which they are a grid; by default disks "
         "where the packing is random or bonds may break.",
     ),
 ]
-Seeds = Annotated[
-    int,
-    typer.Option(min=1, help="Random packings, to see how results scatter.", metavar="N"),
-]
+Seeds = Annotated[int, Option(min=1, help="Random packings, to see how results scatter.", metavar="N")]
 Longest = Annotated[
     float | None,
-    typer.Option(
+    Option(
         "--longest",
         min=0.0,
         metavar="SECONDS",
@@ -120,9 +117,8 @@ def advise_cases(
         elif not found.best[bound].holds(bound):
             missed.append(_missed(case, found, bound))
         elif found.best[bound].choice.changes:
-            _write(
-                found.best[bound].case, text_for(targets[number], path, case, changes), found, bound, targets[number]
-            )
+            target = targets[number]
+            _write(found.best[bound], text_for(target, path, case, changes), target)
     if missed:
         raise NotAccurateError("\n".join(missed))
 
@@ -165,8 +161,7 @@ def chosen(
     best = found.best[bound]
     if not best.holds(bound):
         raise NotAccurateError(_missed(case, found, bound))
-    said = [_line(best), *(best.choice.toml or ["the case as it is"])]
-    print_lines(*(f"{case.name}: {line}" for line in said))
+    print_lines(*(f"{case.name}: {line}" for line in (_line(best), *(best.choice.toml or ["the case as it is"]))))
     return best.case
 
 
@@ -203,7 +198,7 @@ def _missed(case: Case, found: Advice, bound: float) -> str:
     return "\n".join([*said, *best.choice.toml])
 
 
-def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> None:
+def _write(best: Proposal, text: str, target: Path) -> None:
     """Write the text of a case with the changes of the best choice, after reading and planning it."""
     from dembound.accuracy.choice import digest
     from dembound.casefile.edit import edited
@@ -211,10 +206,10 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
     from dembound.running import plan
     from dembound.schemas import loads
 
-    choice = found.best[bound].choice
+    choice = best.choice
     text = edited(text, choice.changes)
     again = loads(text, target.parent, target.stem)
-    if digest(again) != digest(case) and again.keys != case.keys:  # digests of 80 and 80.0 differ
+    if digest(again) != digest(choice.case) and again.keys != choice.case.keys:  # digests of 80 and 80.0 differ
         raise RuntimeError(f"{target}: the text is not that of the choice")
     plan(again)
     write_text(target, text)
@@ -222,13 +217,12 @@ def _write(case: Case, text: str, found: Advice, bound: float, target: Path) -> 
 
 
 Repeat = Annotated[
-    bool,
-    typer.Option("--repeat", help="Repeat the run with 0.98 of its time step, to see what of the cracks is chance."),
+    bool, Option("--repeat", help="Repeat the run with 0.98 of its time step, to see what of the cracks is chance.")
 ]
 
 Spent = Annotated[
     float | None,
-    typer.Option(
+    Option(
         "--longest",
         min=0.0,
         metavar="SECONDS",
@@ -239,7 +233,7 @@ Spent = Annotated[
 
 @app.command("estimate", rich_help_panel=MORE)
 def estimate(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     repeat: Repeat = False,
     longest: Spent = None,
     threads: Threads = None,

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer import Argument, Option
 from typer.core import TyperCommand, TyperGroup
 
 from dembound.cli.console import ending_with, out
@@ -138,8 +139,8 @@ def ending_in(*endings: str) -> Callable[[typer.CallbackParam, Path | None], Pat
 
 
 png = ending_in(".png")
-PICTURE = typer.Option("--output", "-o", help="Picture (PNG).", callback=png)
-PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
+PICTURE = Option("--output", "-o", help="Picture (PNG).", callback=png)
+PictureTitle = Annotated[str | None, Option("--title", help="Title of the picture; by default its content.")]
 
 
 def at_most(limit: int) -> Callable[[typer.CallbackParam, Any], Any]:
@@ -156,40 +157,35 @@ def at_most(limit: int) -> Callable[[typer.CallbackParam, Any], Any]:
 few = at_most(10_000)
 """A check of a number of samples, or of runs that are repeated."""
 
-Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
-Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]
-Threads = Annotated[int | None, typer.Option(min=1, help="Cores to use; all by default. Results do not depend on it.")]
+Cases = Annotated[list[Path], Argument(metavar="CASE...", help="Case files (TOML).")]
+Output = Annotated[Path, Option("--output", "-o", help="Folder for the results.")]
+Threads = Annotated[int | None, Option(min=1, help="Cores to use; all by default. Results do not depend on it.")]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
+    Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
 ]
 Vary = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         metavar="KEY=A,B,…",
         help="Values of a key, or a range, e.g. packing.radius=0.25,0.5 or packing.seed=1:20. May be repeated: all "
         "combinations are run.",
     ),
 ]
 Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
+    str | None, Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
 ]
-Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
+Name = Annotated[str | None, Option(help="Name of the results folder; by default the case file's.")]
 
 
 class Side(StrEnum):
     """The sides of a scene; an enumeration, as lists of options need one."""
 
-    left = "left"
-    right = "right"
-    bottom = "bottom"
-    top = "top"
+    left, right, bottom, top = "left", "right", "bottom", "top"
 
 
 @app.callback(invoke_without_command=True)
-def _version(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
-) -> None:
+def _version(version: Annotated[bool, Option("--version", help="Print the version and stop.")] = False) -> None:
     if version:
         out.print(f"dembound {__version__}")
         raise typer.Exit

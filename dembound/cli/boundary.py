@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
 from rich.table import Table
+from typer import Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.cli.console import compact_table, err, out, seldom
 from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError
 from dembound.machine import one_thread_for_matrices
@@ -46,7 +45,7 @@ def boundary(
     case: OneCase,
     sides: Annotated[
         list[Side] | None,
-        typer.Option(
+        Option(
             "--side",
             "-s",
             metavar="SIDE",
@@ -55,15 +54,14 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        typer.Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
+        Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
     ] = None,
     frequencies: Annotated[
-        list[float] | None,
-        typer.Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated."),
+        list[float] | None, Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated.")
     ] = None,
     types: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--type",
             metavar="TYPE",
             help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'. May be "
@@ -72,13 +70,11 @@ def boundary(
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Quick estimate with a continuum in place of the disks.")
-    ] = False,
+    quick: Annotated[bool, Option("--quick", help="Quick estimate with a continuum in place of the disks.")] = False,
     table: CurveTable = None,
     longest: Annotated[
         float,
-        typer.Option(
+        Option(
             "--longest", min=0.0, metavar="SECONDS", help="CPU seconds, about, within which frequencies are measured."
         ),
     ] = LONGEST,
@@ -91,37 +87,29 @@ def boundary(
     A left or right side beside layers has one of each for every layer.
     """
     one_thread_for_matrices()  # before numpy is imported
-    from dembound.disks.reflection import (
-        ANGLES,
-        FREQUENCIES,
-        compare_types,
-        layers_beside,
-        measure_side,
-        measured_sides,
-        seconds_of,
-    )
+    from dembound.disks import reflection
 
     prepare_computing(None)
     if types and quick:
         raise CaseError(["--quick: is not possible with --type; leave it out"])
     loaded = load_disks(case, changes)
-    chosen = [side.value for side in sides] if sides else measured_sides(loaded)
+    chosen = [side.value for side in sides] if sides else reflection.measured_sides(loaded)
     nowhere: tuple[str | None, ...] = (None,)
-    parts = [(side, layer) for side in chosen for layer in (*layers_beside(loaded, side),) or nowhere]
-    given, hertz = sorted(set(angles or ())), sorted(set(frequencies or ()))
-    count, asked = len(hertz) or FREQUENCIES, (len(given) or len(ANGLES)) if not types else len(given or COMPARED)
-    each = 0.0 if quick else seconds_of(loaded, len(parts) * max(1, len(types or ())), asked, 1)
-    count = _within(longest, count, each, loaded.name, may_be_fewer=not (hertz or types))
+    parts = [(side, layer) for side in chosen for layer in (*reflection.layers_beside(loaded, side),) or nowhere]
+    given = sorted(set(angles or (COMPARED if types else reflection.ANGLES)))
+    hertz, may_be_fewer = sorted(set(frequencies or ())), not (frequencies or types)
+    each = 0.0 if quick else reflection.seconds_of(loaded, len(parts) * max(1, len(types or ())), len(given), 1)
+    count = _within(longest, len(hertz) or reflection.FREQUENCIES, each, loaded.name, may_be_fewer=may_be_fewer)
     for side, layer in parts:
         report = _report(side if layer is None else f"{side}, in {layer}")
         if types:
             tables = [_table(text) for text in types]
-            found = compare_types(loaded, side, tables, given or COMPARED, frequencies or (), report, layer)
+            found = reflection.compare_types(loaded, side, tables, given, frequencies or (), report, layer)
             words = f"Energy that types of the {side} side of {loaded.name} send back"
             figure = _compared(*found, words if layer is None else f"{words} in {layer}")
         else:
-            measured = measure_side(
-                loaded, side, given or ANGLES, hertz or count, report=report, quick=quick, layer=layer
+            measured = reflection.measure_side(
+                loaded, side, given, hertz or count, report=report, quick=quick, layer=layer
             )
             figure = _measured(measured, loaded.name, side, layer)
         ending = "" if len(parts) == 1 else f"_{side}" if layer is None else f"_{side}_{layer}"
@@ -192,12 +180,10 @@ def _within(longest: float, count: int, each: float, name: str, *, may_be_fewer:
 
 def _report(side: str) -> Callable[[float], None]:
     """Prints the frequency that is being computed, at most every `INTERVAL` seconds."""
-    said = time.monotonic()
+    is_due = seldom()
 
     def report(frequency: float) -> None:
-        nonlocal said
-        if time.monotonic() - said > INTERVAL:
-            said = time.monotonic()
+        if is_due():
             err.print(f"{side}: {frequency:.3g} Hz")
 
     return report
@@ -239,20 +225,15 @@ def _sentences(found: Measured) -> list[str]:
         nodes, values = found.continuum
         beside[f"an outside of {nodes:,} nodes"] = values
     for arrival in found.arrivals:
-        share = arrival.sent_back(found.found)
-        if not math.isfinite(share):
-            continue
-        name = arrival.name if arrival.signal is None else f"{arrival.name}, weighted with its spectrum"
-        line = f"{name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
-        lines.append(
-            "; ".join([line, *(f"{other} {_percent(arrival.sent_back(each))}" for other, each in beside.items())])
-        )
+        if math.isfinite(share := arrival.sent_back(found.found)):
+            name = arrival.name if arrival.signal is None else f"{arrival.name}, weighted with its spectrum"
+            line = f"{name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
+            others = [f"{other} {_percent(arrival.sent_back(each))}" for other, each in beside.items()]
+            lines.append("; ".join([line, *others]))
     if found.rock:
         each = " and ".join(f"{_percent(share)} for {kind.upper()} waves" for kind, share in found.rock.items())
-        lines.append(
-            f"the rock itself returns of the amplitude along the normal {each}; dashpots stand for it there alone, and "
-            "what rock returns at other angles is not predicted"
-        )
+        alone = "dashpots stand for it there alone, and what rock returns at other angles is not predicted"
+        lines.append(f"the rock itself returns of the amplitude along the normal {each}; {alone}")
     highest = found.found.frequencies.max()
     gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
     if gaps:

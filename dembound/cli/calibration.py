@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import (
     Name,
@@ -20,7 +20,7 @@ from dembound.cli.app import (
     text_for,
     writable,
 )
-from dembound.cli.console import compact_table, out
+from dembound.cli.console import compact_table, out, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.errors import CaseError
 from dembound.studies.asked import Calibrating
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 CALIBRATED = "_calibrated"
 """Suffix of the name of a calibrated case."""
 
-OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
+OneCase = Annotated[Path, Argument(metavar="CASE", help="A case file (TOML).")]
 
 
 WaveType = Literal["p", "s"]
@@ -45,22 +45,20 @@ def calibrate_sides(
     case: OneCase,
     *,
     boundary: Annotated[
-        Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
+        Side | None, Option("--boundary", "-b", help="Side to calibrate; required without --all.")
     ] = None,
     every: Annotated[
-        bool, typer.Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
+        bool, Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
     ] = False,
     wave: Annotated[
-        WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
+        WaveType | None, Option(help="P or S; by default the wave that runs towards this side, else P.")
     ] = None,
     how: Calibrating,
     output: Output = Path("results"),
     calibrated: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Calibrated case; by default NAME_calibrated.toml beside the case.",
-            callback=writable,
+        Option(
+            metavar="FILE", help="Calibrated case; by default NAME_calibrated.toml beside the case.", callback=writable
         ),
     ] = None,
     changes: Settings = None,
@@ -98,7 +96,7 @@ def calibrate_sides(
         folder = folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}")
         _leave(found, one.summary(), folder, [folder / "calibration.h5"])
     write_text(target, edited(text, changes_of(found)))
-    out.print(f"wrote {target}")
+    print_written(target)
 
 
 def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> list[str]:
@@ -151,9 +149,8 @@ def _leave(found: Sequence[Calibration], summary: Mapping[str, Any], folder: Pat
     for each, record in zip(found, records, strict=True):
         make_folder(record.parent)
         each.write(record)
-        out.print(f"wrote {record}")
     write_json(folder / "summary.json", summary)
-    out.print(f"wrote {folder / 'summary.json'}")
+    print_written(*records, folder / "summary.json")
     picture = folder / "convergence.png"
     remove(picture)  # one of an earlier calibration with another method
     if found[0].beta:

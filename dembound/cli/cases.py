@@ -11,21 +11,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.advise import Error, Keep, Longest, bound_of, chosen, name_within, print_estimate
-from dembound.cli.app import (
-    MORE,
-    Cases,
-    Name,
-    Output,
-    Settings,
-    Threads,
-    app,
-    changed,
-    load_case,
-    prepare_computing,
-)
+from dembound.cli.app import MORE, Cases, Name, Output, Settings, Threads, app, changed, load_case, prepare_computing
 from dembound.cli.console import compact_table, ending_with, err, out
 from dembound.errors import CaseError
 from dembound.version import IMPORT_BEGAN
@@ -118,7 +107,7 @@ def run(
     changes: Settings = None,
     name: Name = None,
     threads: Threads = None,
-    estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
+    estimate: Annotated[bool, Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
     error: Error = None,
     keep: Keep = None,
     longest: Longest = None,
@@ -170,8 +159,8 @@ def run(
 
 @app.command("resume", rich_help_panel=MORE)
 def resume(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
-    until: Annotated[float | None, typer.Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
+    until: Annotated[float | None, Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
     threads: Threads = None,
 ) -> None:
     """Continue stopped runs from their last checkpoints.
@@ -196,7 +185,7 @@ def resume(
 
 @app.command("rerun", rich_help_panel=MORE)
 def rerun(
-    record: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
+    record: Annotated[Path, Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,
@@ -229,9 +218,8 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
 
     target = Folder(output, name)
     if record.parent.resolve() in (target.final.resolve(), target.partial.resolve()):
-        raise CaseError(
-            [f"--set: would replace {record}, from which the case is read; give another --name or --output"]
-        )
+        advice = "give another --name or --output"
+        raise CaseError([f"--set: would replace {record}, from which the case is read; {advice}"])
 
 
 def _print_replaced(case: Case, output: Path) -> None:
@@ -244,12 +232,7 @@ def _print_replaced(case: Case, output: Path) -> None:
 
 
 def _run(
-    case: Case,
-    output: Path,
-    spent: dict[str, float],
-    begun_for: float | None = None,
-    *,
-    estimated: bool = False,
+    case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None, *, estimated: bool = False
 ) -> None:
     """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Option
 
 from dembound.cli.advise import Of
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, few, load_case, prepare_computing
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import ending_with, err, out, print_rows
+from dembound.cli.console import ending_with, err, out, print_rows, print_written
 from dembound.cli.options import leave, names_of
 
 if TYPE_CHECKING:
     from dembound.accuracy.chart.study import Charted, Line
-    from dembound.running import Progress
 
 
 ChartQuantity = Literal["velocity", "displacement", "stress"]
@@ -38,29 +36,27 @@ def chart(
     vary: Vary = None,
     reference: Annotated[
         ChartReference | None,
-        typer.Option(
+        Option(
             metavar="REFERENCE",
             help="exact, a solution; extended, a scene so large that nothing returns; finer, of bars; finest, the "
             "choice with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
-        ChartQuantity,
-        typer.Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars)."),
+        ChartQuantity, Option(metavar="QUANTITY", help=f"Quantity compared: {names_of(ChartQuantity)} (bars).")
     ] = "velocity",
-    component: Annotated[ChartComponent | None, typer.Option(help="By default the largest in the reference.")] = None,
-    monitor: Annotated[str | None, typer.Option(metavar="NAME", help="By default that with the largest error.")] = None,
+    component: Annotated[ChartComponent | None, Option(help="By default the largest in the reference.")] = None,
+    monitor: Annotated[str | None, Option(metavar="NAME", help="By default that with the largest error.")] = None,
     of: Of = None,
     repeats: Annotated[
-        int | None,
-        typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's."),
+        int | None, Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
+    resume: Annotated[bool, Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,
     name: Name = None,
-    threads: Annotated[int, typer.Option(min=1, help="CPU times vary least with one.")] = 1,
+    threads: Annotated[int, Option(min=1, help="CPU times vary least with one.")] = 1,
 ) -> None:
     """Chart the errors of many choices of keys against their cost.
 
@@ -72,27 +68,16 @@ def chart(
     from dembound.accuracy.chart.study import chart as make
     from dembound.accuracy.choice import combinations, parsed_options
     from dembound.accuracy.reference import Requested
+    from dembound.cli.progress import progress_of
 
     prepare_computing(threads)
     loaded = load_case(case, changes, name)
-    options = Options(
-        named=combinations(loaded, parsed_options(vary)) if vary else None,
-        repeats=repeats,
-        reference=reference,
-        of=of,
-        requested=Requested(quantity, component, monitor),
-    )
+    named = combinations(loaded, parsed_options(vary)) if vary else None
+    options = Options(named, repeats, reference, of, Requested(quantity, component, monitor))
     folder = output / f"{loaded.name}_chart"
 
-    @contextmanager
-    def shown(run: str) -> Iterator[Progress]:
-        from dembound.cli.progress import progress_of
-
-        with progress_of(f"{loaded.name}, {run}") as progress:
-            yield progress
-
     with ending_with(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues"):
-        charted = make(loaded, options, folder, resume, shown)
+        charted = make(loaded, options, folder, resume, lambda run: progress_of(f"{loaded.name}, {run}"))
     _print(charted)
     _leave(charted, folder, title)
 
@@ -145,5 +130,5 @@ def _leave(charted: Charted, folder: Path, title: str | None) -> None:
 
     for path, write in ((folder / "chart.h5", write_results), (folder / "chart.csv", write_table)):
         write(charted, path)
-        out.print(f"wrote {path}")
+        print_written(path)
     leave(plot_chart(folder / "chart.h5", title), folder / "chart.png")

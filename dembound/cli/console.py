@@ -5,8 +5,10 @@ from __future__ import annotations
 import io
 import sys
 import textwrap
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -46,6 +48,26 @@ class PlainConsole(Console):
 
 out = PlainConsole()
 err = PlainConsole(stderr=True)
+
+
+def print_written(*paths: Path) -> None:
+    """Print each file that was written."""
+    for path in paths:
+        out.print(f"wrote {path}")
+
+
+def seldom() -> Callable[[], bool]:
+    """Answers, whenever it is asked, whether `INTERVAL` seconds are over since its last yes, or since it was made."""
+    said = time.monotonic()
+
+    def is_due() -> bool:
+        nonlocal said
+        if (now := time.monotonic()) - said < INTERVAL:
+            return False
+        said = now
+        return True
+
+    return is_due
 
 
 def print_lines(*lines: str) -> None:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Table
 from rich.text import Text
+from typer import Argument, Option
 
 from dembound.cli.app import (
     MORE,
@@ -27,7 +27,7 @@ from dembound.cli.app import (
     prepare_computing,
 )
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import compact_table, err, out, print_written
 from dembound.cli.options import CurveTable, leave
 from dembound.errors import CaseError, RunError
 
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 
 @app.command("exact", rich_help_panel=MORE)
 def exact(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
+    path: Annotated[Path, Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
-        str | None, typer.Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
+        str | None, Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -86,22 +86,19 @@ def _several(default: Sequence[float]) -> str:
 
 @app.command("dispersion", rich_help_panel=MORE)
 def dispersion(
-    cases: Annotated[list[Path] | None, typer.Argument(metavar="CASE", help="Case files of bars.")] = None,
+    cases: Annotated[list[Path] | None, Argument(metavar="CASE", help="Case files of bars.")] = None,
     horizons: Annotated[
         list[int] | None,
-        typer.Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
+        Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
     ] = None,
     spacings: Annotated[
-        list[float] | None, typer.Option("--spacing", help=f"Distance Δx of the nodes (m). {_several(SPACINGS)}")
+        list[float] | None, Option("--spacing", help=f"Distance Δx of the nodes (m). {_several(SPACINGS)}")
     ] = None,
     time_steps: Annotated[
-        list[float] | None,
-        typer.Option("--time-step", help=f"Time step Δt (s); 0: exact in time. {_several(TIME_STEPS)}"),
+        list[float] | None, Option("--time-step", help=f"Time step Δt (s); 0: exact in time. {_several(TIME_STEPS)}")
     ] = None,
-    wave_speed: Annotated[
-        float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
-    ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, too.")] = False,
+    wave_speed: Annotated[float | None, Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")] = None,
+    check: Annotated[bool, Option("--check", help="Simulate some waves, too.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
     title: PictureTitle = None,
     table: CurveTable = None,
@@ -127,7 +124,7 @@ def dispersion(
     leave(plot_dispersion(shown, _simulated(shown) if check else ()), output, title)
     if table is not None:
         write_table(shown, table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def _refuse(options: Mapping[str, object], why: str) -> None:
@@ -178,31 +175,22 @@ def _simulated(shown: Sequence[Lattice]) -> list[Points]:
     return points
 
 
-STRENGTH = "strength.csv"
-"""Table of --strength by default."""
-
-
 @app.command("stability", rich_help_panel=MORE)
 def stability(
     case: OneCase,
     steps: Annotated[
-        int | None,
-        typer.Option(
-            help="Steps of noise at the case's own time step; by default 5,000 to 100,000.",
-            min=1,
-        ),
+        int | None, Option(help="Steps of noise at the case's own time step; by default 5,000 to 100,000.", min=1)
     ] = None,
-    full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
+    full: Annotated[bool, Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
     strength: Annotated[
-        bool,
-        typer.Option("--strength", help="How near the ground is to failure under its weight, not the step."),
+        bool, Option("--strength", help="How near the ground is to failure under its weight, not the step.")
     ] = False,
     tolerance: Annotated[
-        float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")
+        float | None, Option(help="Relative width of the brackets of --strength; by default 0.02.")
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--output",
             "-o",
             help="Picture (PNG), by default stability.png; of --strength the table (CSV), strength.csv.",
@@ -233,7 +221,9 @@ def stability(
         raise CaseError([f"--output: is {output}, must end in {ending}"])
     prepare_computing(threads)
     if strength:
-        measure_strength(load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path(STRENGTH))
+        measure_strength(
+            load_disks(case, changes), 0.02 if tolerance is None else tolerance, output or Path("strength.csv")
+        )
         return
     from dembound.plot.stability import plot_stability
     from dembound.studies.stability import measure
@@ -294,12 +284,10 @@ def _lines(found: Sequence[Stability]) -> tuple[list[Line], list[Line]]:
 
 def _fail_if_unstable(found: Sequence[Stability]) -> None:
     """Raise RunError, with a line for each law or stage that is not stable at the case's own step."""
-    lines = [
-        f"{each.trial.name}: not stable at the case's own step of {each.trial.step:.6g} s; the largest stable one is "
-        f"{each.measured:.6g} s"
-        for each in found
-        if not each.is_stable
-    ]
+    lines = []
+    for each in (each for each in found if not each.is_stable):
+        said = f"not stable at the case's own step of {each.trial.step:.6g} s"
+        lines.append(f"{each.trial.name}: {said}; the largest stable one is {each.measured:.6g} s")
     if lines:
         raise RunError("\n".join(lines))
 
@@ -309,8 +297,8 @@ def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
     title: PictureTitle = None,
-    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
-    brick: Annotated[bool, typer.Option("--brick", help="The first case's whole brick.")] = False,
+    side: Annotated[Side, Option(help="Side whose particles are marked.")] = Side.right,
+    brick: Annotated[bool, Option("--brick", help="The first case's whole brick.")] = False,
     changes: Settings = None,
 ) -> None:
     """Draw a side of the packing of each case, or a brick (PNG)."""
@@ -323,12 +311,9 @@ def packing(
         figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
     else:
         scenes = {case.name: build(case) for case in loaded}
-        figure = plot_patterns(
-            {
-                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
-                for name, scene in scenes.items()
-            }
-        )
+        edges = {name: _edge_of(scene, side.value).nodes for name, scene in scenes.items()}
+        bodies = {name: scene.assembly for name, scene in scenes.items()}
+        figure = plot_patterns({name: (body.positions, body.radii, edges[name]) for name, body in bodies.items()})
     leave(figure, output, title)
 
 

@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
 from rich.table import Table
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, writable
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import compact_table, err, out, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.cli.results import results_file
 from dembound.cli.signal_options import SignalOptions, of_file
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from dembound.gauge.spalling import Findings
 
 
-_of_bars = partial(typer.Option, rich_help_panel="Bars and specimen")
-_of_pulses = partial(typer.Option, rich_help_panel="Pulses")
+_of_bars = partial(Option, rich_help_panel="Bars and specimen")
+_of_pulses = partial(Option, rich_help_panel="Pulses")
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -36,54 +36,39 @@ MPA = 1e6
 class EvaluationOptions:
     """What is known of a test on a bar, and what is estimated."""
 
-    spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None
+    spall: Annotated[float | None, Option(help="Where the bar spalled, from the loaded end (m).")] = None
     free_end: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
+        Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
     ] = None
     estimate: Annotated[
-        bool,
-        typer.Option("--estimate", help="Speed and attenuation from tension peaks, though results have them."),
+        bool, Option("--estimate", help="Speed and attenuation from tension peaks, though results have them.")
     ] = False
-    peaks: Annotated[
-        int | None, typer.Option(help="Number of first tension peaks for speed and attenuation.", min=2)
-    ] = None
+    peaks: Annotated[int | None, Option(help="Number of first tension peaks for speed and attenuation.", min=2)] = None
     pulse_end: Annotated[
-        float | None, typer.Option(help="When the incident pulse has passed (s); by default when it returns.")
+        float | None, Option(help="When the incident pulse has passed (s); by default when it returns.")
     ] = None
-    wave_speed: Annotated[float | None, typer.Option(help="Wave speed (m/s) of another test.")] = None
-    attenuation: Annotated[
-        float | None,
-        typer.Option(help="Attenuation (1/m) of another test."),
-    ] = None
+    wave_speed: Annotated[float | None, Option(help="Wave speed (m/s) of another test.")] = None
+    attenuation: Annotated[float | None, Option(help="Attenuation (1/m) of another test.")] = None
 
     def of(self, gauge: Gauge, path: Path) -> Findings:
         """All estimates from a gauge in a file; raises CaseError as `evaluate` and `read_free_end`."""
         from dembound.gauge.gauge_io import read_free_end
         from dembound.gauge.spalling import evaluate
 
-        return evaluate(
-            gauge,
-            spall=self.spall,
-            free_end=None if self.free_end is None else read_free_end(path, self.free_end),
-            estimate=self.estimate,
-            count=self.peaks,
-            pulse_end=self.pulse_end,
-            speed=self.wave_speed,
-            coefficient=self.attenuation,
-        )
+        free_end = None if self.free_end is None else read_free_end(path, self.free_end)
+        known = {"speed": self.wave_speed, "coefficient": self.attenuation, "pulse_end": self.pulse_end}
+        return evaluate(gauge, spall=self.spall, free_end=free_end, estimate=self.estimate, count=self.peaks, **known)
 
 
 @app.command("gauge", rich_help_panel=MORE)
 @with_tables
 def gauge(
-    record: Annotated[Path, typer.Argument(metavar="RECORD", help="Text file of time and signal, or a run's results.")],
-    monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
-    position: Annotated[float | None, typer.Option(help="Position of the gauge from the loaded end (m).")] = None,
-    length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
-    density: Annotated[
-        float | None, typer.Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")
-    ] = None,
+    record: Annotated[Path, Argument(metavar="RECORD", help="Text file of time and signal, or a run's results.")],
+    monitor: Annotated[str | None, Option(metavar="NAME", help="Monitor of the results.")] = None,
+    position: Annotated[float | None, Option(help="Position of the gauge from the loaded end (m).")] = None,
+    length: Annotated[float | None, Option(help="Length of the bar (m).")] = None,
+    density: Annotated[float | None, Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")] = None,
     *,
     evaluation: EvaluationOptions,
     output: Annotated[Path | None, PICTURE] = None,
@@ -158,8 +143,7 @@ def _error(error: float) -> str:
 
 
 Window = Annotated[
-    tuple[float, float] | None,
-    _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found."),
+    tuple[float, float] | None, _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found.")
 ]
 Column = Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Its column, or monitor of results.")]
 
@@ -194,11 +178,10 @@ class BarOptions:
 @with_tables
 def hopkinson(
     incident: Annotated[
-        Path, typer.Argument(metavar="INCIDENT", help="Signal on the incident bar: text file, or a run's results.")
+        Path, Argument(metavar="INCIDENT", help="Signal on the incident bar: text file, or a run's results.")
     ],
     transmitted: Annotated[
-        Path | None,
-        typer.Argument(metavar="[TRANSMITTED]", help="Signal on the transmission bar; by default the same file."),
+        Path | None, Argument(metavar="[TRANSMITTED]", help="Signal on the transmission bar; by default the same file.")
     ] = None,
     *,
     bars: BarOptions,
@@ -210,10 +193,10 @@ def hopkinson(
     opposite: Annotated[
         bool, _of_pulses("--opposite", help="The transmission bar's gauge has the opposite sign.")
     ] = False,
-    equilibrium: Annotated[float, typer.Option(help="Largest difference of the forces over their mean.")] = 0.05,
+    equilibrium: Annotated[float, Option(help="Largest difference of the forces over their mean.")] = 0.05,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
-    table: Annotated[Path | None, typer.Option(help="Table of the histories (CSV).", callback=writable)] = None,
+    table: Annotated[Path | None, Option(help="Table of the histories (CSV).", callback=writable)] = None,
     signal: SignalOptions,
 ) -> None:
     """Evaluate a split Hopkinson test: stress, strain, strain rate.
@@ -241,7 +224,7 @@ def hopkinson(
         leave(plot_hopkinson(faces, found), output, title)
     if table is not None:
         found.write(table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def _specimen_overview(found: Specimen, tolerance: float) -> Table:

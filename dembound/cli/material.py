@@ -9,21 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
+from typer import Argument, Option
 
-from dembound.cli.app import (
-    MORE,
-    Name,
-    Output,
-    Scheduler,
-    Settings,
-    app,
-    few,
-    load_disks,
-    require_one_place,
-    text_for,
-)
+from dembound.cli.app import MORE, Name, Output, Scheduler, Settings, app, few, load_disks, require_one_place, text_for
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import ending_with, err, out, print_lines, print_rows
+from dembound.cli.console import ending_with, err, out, print_lines, print_rows, print_written
 from dembound.cli.options import leave, with_tables
 from dembound.cli.sweep import FAILED, cells_of, print_failed, shown
 from dembound.errors import CaseError
@@ -46,7 +36,7 @@ class LoadingOptions(Loading):
     """Samples, how they are loaded, and where they run."""
 
     processes: Annotated[
-        int | None, typer.Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
+        int | None, Option("--processes", "-p", min=1, help="Samples at once; as many as cores by default.")
     ] = None
     scheduler: Scheduler = None
 
@@ -91,19 +81,17 @@ PRINTED = {
 @app.command("test")
 @with_tables
 def laboratory(
-    kind: Annotated[str, typer.Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
+    kind: Annotated[str, Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
+    case: Annotated[Path, Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
     *,
     seeds: Annotated[
-        int, typer.Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
+        int, Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
     ] = 4,
     pressures: Annotated[
-        str | None, typer.Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
+        str | None, Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
     ] = None,
-    shares: Annotated[
-        str, typer.Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")
-    ] = "0.1,0.5",
-    anew: Annotated[bool, typer.Option("--anew", help="Also repeat samples that are done.")] = False,
+    shares: Annotated[str, Option(metavar="LOW,HIGH", help="Shares of the peak between which E is taken.")] = "0.1,0.5",
+    anew: Annotated[bool, Option("--anew", help="Also repeat samples that are done.")] = False,
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,
@@ -191,8 +179,7 @@ def _leave(tested: Tested, ratios: Sequence[Ratio]) -> None:
     """Write tables, cases and pictures, printing each."""
     from dembound.studies.laboratory.tables import write_tables
 
-    for path in write_tables(tested, ratios):
-        out.print(f"wrote {path}")
+    print_written(*write_tables(tested, ratios))
     if not tested.done:
         return
     from dembound.plot.laboratory import plot_curves, plot_envelope, plot_sample
@@ -239,10 +226,7 @@ def match_strengths(
         err.print(f"{case.name}: {test}, {sample.in_words}")
         return sample
 
-    material, options = case.material, loading.options()
-    cohesion = 1.0 if material.pb_ten is None or material.pb_coh is None else material.pb_coh / material.pb_ten
-    spread = strengths.spread_of(material.pb_scatter)
-    search, done = strengths.Search(wanted, cohesion, spread, material.pb_mcf), []
+    options, search, done = loading.options(), strengths.Search.of(case.material, wanted), []
     said = f"{case.name}: stopped; the same command continues what is left"
     with ending_with(said), shown(case.name, "samples") as report:
         measure = strengths.measure_in(make, case, seeds, options, output / f"{case.name}_strengths", report)
@@ -257,7 +241,7 @@ def match_strengths(
     comments = [f"{FOUND} {words}; {loading.sample(tested, test).in_words}" for test, words in found.items()]
     text = edited(text_for(target, path, case, settings), keys)
     write_text(target, commented(text, "material.pb_ten", comments, FOUND))
-    out.print(f"wrote {target}")
+    print_written(target)
     if best.deviation(wanted) > strengths.CLOSE:
         missed = ", ".join(f"{test} is {strengths.excess_in_words(test, best, wanted)}" for test in wanted)
         said = f"no trial of {len(done)} is within {percent(strengths.CLOSE)}; written is the best one"
@@ -267,12 +251,10 @@ def match_strengths(
 
 def _ratio_of_samples(material: Material) -> float | None:
     """The ratio of compressive and tensile strength to expect of samples; None without both strengths of bonds."""
-    from dembound.studies.laboratory.strengths import Search, spread_of
+    from dembound.studies.laboratory.strengths import Search
 
-    if material.pb_ten is None or material.pb_coh is None:
-        return None
-    spread = spread_of(material.pb_scatter)
-    return Search({}, material.pb_coh / material.pb_ten, spread, material.pb_mcf).expected_ratio()
+    has_both = material.pb_ten is not None and material.pb_coh is not None
+    return Search.of(material, {}).expected_ratio() if has_both else None
 
 
 SEEDS = 8
@@ -285,17 +267,15 @@ def material(
     case: OneCase,
     *,
     ucs: Annotated[
-        float | None, typer.Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
+        float | None, Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
     ] = None,
     tension: Annotated[
-        float | None, typer.Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
+        float | None, Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
     ] = None,
-    seeds: Annotated[
-        int, typer.Option(min=1, callback=few, help="Samples of each test, for --ucs and --tension.")
-    ] = SEEDS,
+    seeds: Annotated[int, Option(min=1, callback=few, help="Samples of each test, for --ucs and --tension.")] = SEEDS,
     output: Output = Path("results"),
     changes: Settings = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
+    as_json: Annotated[bool, Option("--json", help="Print JSON, in SI units, for scripts.")] = False,
     loading: LoadingOptions,
 ) -> None:
     """Print what contacts and bonds make of the body, without a run.

@@ -9,10 +9,10 @@ from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_type_hints
 
-import typer
+from typer import Option
 
 from dembound.cli.app import Side, writable
-from dembound.cli.console import out
+from dembound.cli.console import print_written
 from dembound.studies.asked import Asked
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def _options(table: type) -> Iterator[Parameter]:
 def _as_option(name: str, asked: Asked, *, is_flag: bool) -> Any:
     """The option of a field of a study; a flag has no opposite."""
     names = (f"--{name.replace('_', '-')}",) if is_flag else ()
-    return typer.Option(*names, help=asked.help, metavar=asked.metavar, min=asked.least, rich_help_panel=asked.panel)
+    return Option(*names, help=asked.help, metavar=asked.metavar, min=asked.least, rich_help_panel=asked.panel)
 
 
 def leave(figure: Figure, picture: Path, title: str | None = None, table: Path | None = None) -> None:
@@ -70,12 +70,12 @@ def leave(figure: Figure, picture: Path, title: str | None = None, table: Path |
     from dembound.plot.style import save
 
     save(figure, picture, title)
-    out.print(f"wrote {picture}")
+    print_written(picture)
     if table is not None:
         from dembound.plot.table import write_lines
 
         write_lines(figure, table)
-        out.print(f"wrote {table}")
+        print_written(table)
 
 
 def names_of(choices: Any) -> str:
@@ -98,27 +98,26 @@ Component = Literal["x", "y", "both", "rotation"]
 """Components of the monitors' motion."""
 
 
-CurveTable = Annotated[Path | None, typer.Option("--table", help="Table of the curves (CSV).", callback=writable)]
+CurveTable = Annotated[Path | None, Option("--table", help="Table of the curves (CSV).", callback=writable)]
 QuantityOfMonitors = Annotated[
     Quantity | None,
-    typer.Option(
+    Option(
         "--quantity",
         metavar="QUANTITY",
         help=f"Quantity: {names_of(Quantity)}; by default velocity; stress of bars alone.",
     ),
 ]
 ComponentOfMotion = Annotated[
-    Component | None,
-    typer.Option("--component", help="Component of the motion; by default x or y, whichever is larger."),
+    Component | None, Option("--component", help="Component of the motion; by default x or y, whichever is larger.")
 ]
 Monitors = Annotated[
-    list[str] | None, typer.Option("--monitor", metavar="NAME", help="Show this monitor only. May be repeated.")
+    list[str] | None, Option("--monitor", metavar="NAME", help="Show this monitor only. May be repeated.")
 ]
 
 
 Exaggerated = Annotated[
     float | None,
-    typer.Option(
+    Option(
         "--exaggerate",
         help="Factor of the displacements shown; 0: undeformed. By default 1 once disks have moved by a tenth of a "
         "diameter.",
@@ -149,29 +148,24 @@ class Plotted:
     monitor: Monitors = None
     boundary: Annotated[
         Side | None,
-        typer.Option(
-            help="This side's diameters and peak velocities, with --quantity stress or displacement its mean."
-        ),
+        Option(help="This side's diameters and peak velocities, with --quantity stress or displacement its mean."),
     ] = None
-    energy: Annotated[bool, typer.Option("--energy", help="The energy ledger of one run.")] = False
+    energy: Annotated[bool, Option("--energy", help="The energy ledger of one run.")] = False
     field: Annotated[
         SceneField | None,
-        typer.Option(
+        Option(
             metavar="FIELD",
             help=f"The scene of one run, coloured by {names_of(SceneField)}; of a bar over place and time.",
         ),
     ] = None
     snapshot: Annotated[
         int | None,
-        typer.Option(
+        Option(
             help="Number of the snapshot of --field, −1 the last; by default that of the largest values, of a bar all."
         ),
     ] = None
     exaggerate: Exaggerated = None
-    table: Annotated[
-        Path | None,
-        typer.Option(help="Table of the lines drawn (CSV).", callback=writable),
-    ] = None
+    table: Annotated[Path | None, Option(help="Table of the lines drawn (CSV).", callback=writable)] = None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:
         """Options that exclude each other, for a number of results of a kind."""
@@ -211,21 +205,14 @@ class Plotted:
 
     def _side(self, files: Sequence[Path], side: str) -> Figure:
         """A side: its particles, or a quantity of the side as a whole."""
-        if self.quantity is None:
-            from dembound.plot.side import plot_boundary
+        from dembound.plot.side import plot_boundary, plot_side
 
-            return plot_boundary(files, side)
-        from dembound.plot.side import plot_side
-
-        return plot_side(files, side, self.quantity)
+        return plot_boundary(files, side) if self.quantity is None else plot_side(files, side, self.quantity)
 
     def _histories(self, files: Sequence[Path]) -> Figure:
         """The histories of monitors."""
         from dembound.plot.histories import plot_histories
 
         return plot_histories(
-            files,
-            component=self.component,
-            quantity=self.quantity or "velocity",
-            monitors=self.monitor or None,
+            files, component=self.component, quantity=self.quantity or "velocity", monitors=self.monitor or None
         )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app
 from dembound.cli.console import out, print_rows
@@ -21,7 +21,7 @@ ROUNDING = 1e-6
 @app.command("plot")
 @with_tables
 def plot(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, PICTURE] = Path("plot.png"),
     title: PictureTitle = None,
     *,
@@ -59,9 +59,7 @@ def _kind(file: Path) -> str:
 
 
 @app.command("cache", rich_help_panel=MORE)
-def cache(
-    delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
-) -> None:
+def cache(delete: Annotated[bool, Option("--clear", help="Delete all cached bricks.")] = False) -> None:
     """Show the folder of packed bricks, or empty it.
 
     The environment variable DEMBOUND_CACHE sets another folder.
@@ -75,17 +73,13 @@ def cache(
 
 @app.command("compare", rich_help_panel=MORE)
 def compare_histories(
-    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    reference: Annotated[Path, Argument(metavar="REFERENCE", help="Results to measure against.")],
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     quantity: Annotated[
-        Quantity,
-        typer.Option(
-            metavar="QUANTITY",
-            help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.",
-        ),
+        Quantity, Option(metavar="QUANTITY", help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.")
     ] = "velocity",
     as_recorded: Annotated[
-        bool, typer.Option("--as-recorded", help="No correction for waves that enter disks later or earlier.")
+        bool, Option("--as-recorded", help="No correction for waves that enter disks later or earlier.")
     ] = False,
 ) -> None:
     """Print the errors of histories against those of a reference run.

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, PICTURE, PictureTitle, app, at_most, ending_in, writable
-from dembound.cli.console import INTERVAL, err, out
+from dembound.cli.console import err, out, print_written, seldom
 from dembound.cli.options import (
     ComponentOfMotion,
     Exaggerated,
@@ -31,10 +30,10 @@ if TYPE_CHECKING:
 
 @app.command("report")
 def report(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Page (HTML).", callback=ending_in(".html", ".htm"))
-    ] = Path("report.html"),
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    output: Annotated[Path, Option("--output", "-o", help="Page (HTML).", callback=ending_in(".html", ".htm"))] = Path(
+        "report.html"
+    ),
 ) -> None:
     """Write an HTML page of runs: scenes, histories, spectra, energy.
 
@@ -56,27 +55,22 @@ def _movie(path: Path) -> Path:
 
 @app.command("movie", rich_help_panel=MORE)
 def movie(
-    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
+    results: Annotated[Path, Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     output: Annotated[
-        Path,
-        typer.Option("--output", "-o", help="GIF, or a new folder of PNG files.", callback=_movie),
+        Path, Option("--output", "-o", help="GIF, or a new folder of PNG files.", callback=_movie)
     ] = Path("movie.gif"),
     field: Annotated[
-        SceneField | None,
-        typer.Option(
-            metavar="FIELD",
-            help="Field shown: velocity, of a bar also stress and damage.",
-        ),
+        SceneField | None, Option(metavar="FIELD", help="Field shown: velocity, of a bar also stress and damage.")
     ] = None,
     exaggerate: Exaggerated = None,
     monitor: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
+        Option(metavar="NAME", help="Show this monitor's history below. May be repeated; by default all."),
     ] = None,
-    histories: Annotated[bool, typer.Option(help="Histories below the scene.")] = True,
-    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, callback=at_most(1000))] = 10.0,
-    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
-    every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
+    histories: Annotated[bool, Option(help="Histories below the scene.")] = True,
+    fps: Annotated[float, Option(help="Frames per second.", min=0.1, callback=at_most(1000))] = 10.0,
+    size: Annotated[int, Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
+    every: Annotated[int, Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
     """Write a movie of a run and its histories (GIF, or PNG frames).
 
@@ -86,15 +80,9 @@ def movie(
     from dembound.results.reader import understood
 
     file = results_file(results)
+    names = (monitor or None) if histories else []
     with understood(file):
-        shown = movie_of(
-            file,
-            field=field,
-            exaggerate=exaggerate,
-            monitors=(monitor or None) if histories else [],
-            every=every,
-            pixels=size,
-        )
+        shown = movie_of(file, field=field, exaggerate=exaggerate, monitors=names, every=every, pixels=size)
         with _counted(len(shown)) as progress:
             write_movie(shown, output, fps, progress)
     size_in_bytes = sum(path.stat().st_size for path in [output, *output.glob("*.png")])
@@ -104,14 +92,12 @@ def movie(
 @contextmanager
 def _counted(frames: int) -> Iterator[Callable[[int], None]]:
     """Print how many frames are drawn: on a terminal in one line, else every ten seconds."""
-    said = time.monotonic()
+    is_due = seldom()
 
     def count(drawn: int) -> None:
-        nonlocal said
         if err.is_terminal:
             status.update(f"frame {drawn} of {frames}")
-        elif time.monotonic() - said >= INTERVAL:
-            said = time.monotonic()
+        elif is_due():
             err.print(f"frame {drawn} of {frames}")
 
     with err.status("") as status:
@@ -130,7 +116,7 @@ class SignalsShown:
     component: ComponentOfMotion = None
     monitor: Monitors = None
     reference: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Monitor that is the input, of transfer or surface.")
+        str | None, Option(metavar="NAME", help="Monitor that is the input, of transfer or surface.")
     ] = None
 
     def problems(self, show: Shown, count: int) -> Iterator[str]:
@@ -175,7 +161,7 @@ class SignalsShown:
         found = amplification(file, self.monitor or None, self.reference)
         leave(plot_surface(file, found, self.component), output, title)
         write_csv(table := output.with_suffix(".csv"), found.rows())
-        out.print(f"wrote {table}")
+        print_written(table)
         for line in found.notes(COMPONENTS[self.component or "both"]):
             out.print(line)
 
@@ -183,10 +169,10 @@ class SignalsShown:
 @app.command("signals", rich_help_panel=MORE)
 @with_tables
 def signals(
-    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    results: Annotated[list[Path], Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     show: Annotated[
         Shown,
-        typer.Option(
+        Option(
             metavar="WHAT",
             help="fourier: spectra; transfer: their ratios to --reference or to free-field twins; response: spectra "
             "with 5 % damping; section: histories at their distances; hodograph; surface: peaks, spectra and end of "

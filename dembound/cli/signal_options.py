@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Option
 
 from dembound.errors import CaseError
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from dembound.gauge.reading.signal import Reading
     from dembound.gauge.reading.units import Bridge
 
-of_file = partial(typer.Option, rich_help_panel="Text files")
-_of_bridge = partial(typer.Option, rich_help_panel="Strain gauges")
-_cleaning = partial(typer.Option, rich_help_panel="Baseline and filters")
+of_file = partial(Option, rich_help_panel="Text files")
+_of_bridge = partial(Option, rich_help_panel="Strain gauges")
+_cleaning = partial(Option, rich_help_panel="Baseline and filters")
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,9 @@ class SignalOptions:
     no_drift: Annotated[bool, _cleaning("--no-drift", help="Remove no drift.")] = False
     low_pass: Annotated[float | None, _cleaning(help="Keep what is below (Hz).")] = None
     high_pass: Annotated[float | None, _cleaning(help="Keep what is above (Hz).")] = None
-    band: Annotated[
-        tuple[float, float] | None,
-        _cleaning(metavar="LOW HIGH", help="The band that remains (Hz)."),
-    ] = None
+    band: Annotated[tuple[float, float] | None, _cleaning(metavar="LOW HIGH", help="The band that remains (Hz).")] = (
+        None
+    )
     notch: Annotated[list[float] | None, _cleaning(help="Remove this frequency (Hz). May be repeated.")] = None
 
     def reading(self, column: str | None = None) -> Reading:

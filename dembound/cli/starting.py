@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer import Argument, Option
 
 from dembound import shipped
 from dembound.cli.app import MORE, app, writable
-from dembound.cli.console import out
+from dembound.cli.console import out, print_written
 from dembound.errors import CaseError
 from dembound.files import write_text
 from dembound.starting import DEFAULT, ENDING, names, starting_point, titles
@@ -24,19 +25,19 @@ app.add_typer(cases, name="cases", rich_help_panel=MORE)
 @app.command("new")
 def new(
     path: Annotated[
-        Path, typer.Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
+        Path, Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
     ] = Path("case.toml"),
     start: Annotated[
         str | None,
-        typer.Option(
+        Option(
             "--from",
             metavar="NAME",
             help=f"Starting point; by default the one of the file's name, or else {DEFAULT}.",
             autocompletion=lambda: names(),
         ),
     ] = None,
-    listed: Annotated[bool, typer.Option("--list", help="List the starting points.")] = False,
-    schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
+    listed: Annotated[bool, Option("--list", help="List the starting points.")] = False,
+    schema: Annotated[bool, Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
     """Write a commented case file to start from."""
     if listed:
@@ -103,14 +104,14 @@ def _schema() -> str:
 
 @app.command("schema", rich_help_panel=MORE)
 def schema(
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="File (JSON).", callback=writable)] = None,
+    output: Annotated[Path | None, Option("--output", "-o", help="File (JSON).", callback=writable)] = None,
 ) -> None:
     """Print the JSON schema of case files, for editors."""
     if output is None:
         typer.echo(_schema(), nl=False)
         return
     write_text(output, _schema())
-    out.print(f"wrote {output}")
+    print_written(output)
 
 
 @cases.callback()
@@ -126,17 +127,16 @@ def list_cases(context: typer.Context) -> None:
 def copy(
     name: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="NAME",
             help="A case, as `dembound cases` lists it, or a group such as zhou2018.",
             autocompletion=lambda: [*shipped.groups(), *shipped.names()],
         ),
     ],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to.")] = Path(),
+    folder: Annotated[Path, Argument(metavar="FOLDER", help="Where to.")] = Path(),
 ) -> None:
     """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
-    for path in shipped.copy(name, folder):
-        out.print(f"wrote {path}")
+    print_written(*shipped.copy(name, folder))
 
 
 def _print_titles(titles: Mapping[str, str]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dembound.cli.console import out, print_lines, print_rows
+from dembound.cli.console import print_lines, print_rows, print_written
 from dembound.cli.progress import progress_of
 from dembound.errors import RunError
 from dembound.words import with_unit
@@ -29,7 +29,7 @@ def measure_strength(case: DiskCase, tolerance: float, output: Path) -> None:
     print_rows(f"{case.name}: {found.words[0]}", list(_rows(found)))
     print_lines("", *map(_in_words, found.searches), *(f"  {line}" for line in found.words[1:]))
     write_csv(output, found.rows)
-    out.print(f"wrote {output}")
+    print_written(output)
     if not found.holds:
         raise RunError(f"{case.name}: does not stand under its weight")
 

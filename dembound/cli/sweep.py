@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 from dembound.cli.app import (
     MORE,
@@ -26,7 +27,7 @@ from dembound.cli.app import (
     require_one_place,
 )
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import INTERVAL, ending_with, err, out, print_rows
+from dembound.cli.console import ending_with, err, out, print_rows, print_written, seldom
 from dembound.cli.options import leave
 from dembound.errors import CaseError
 from dembound.studies.asked import Method
@@ -62,24 +63,21 @@ def sweep(
     vary: Vary = None,
     together: Annotated[
         bool | None,
-        typer.Option(
-            "--together/--product", help="First values of all keys together, then the second ones, and so on."
-        ),
+        Option("--together/--product", help="First values of all keys together, then the second ones, and so on."),
     ] = None,
     action: Annotated[
-        SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
+        SweepAction | None, Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
-        Method | None,
-        typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
+        Method | None, Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`.")
     ] = None,
     processes: Annotated[
-        int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
+        int | None, Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
     ] = None,
     scheduler: Scheduler = None,
-    anew: Annotated[bool, typer.Option("--anew", help="Also repeat members that are done.")] = False,
+    anew: Annotated[bool, Option("--anew", help="Also repeat members that are done.")] = False,
     quantity: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
+        list[str] | None, Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
     ] = None,
     output: Output = Path("results"),
     title: PictureTitle = None,
@@ -100,13 +98,8 @@ def sweep(
     require_one_place(scheduler, processes)
     loaded = load_case(case, changes, name)
     table = loaded.sweep
-    options = Options(
-        action=action or table.action,
-        method=method or table.method,
-        processes=processes or table.processes,
-        scheduler=scheduler,
-        anew=anew,
-    )
+    chosen = action or table.action, method or table.method, processes or table.processes
+    options = Options(*chosen, scheduler, anew)
     if method and options.action != "calibrate":
         raise CaseError(["--method: is for --action calibrate"])
     varied = variations(parsed_options(vary) if vary else table.vary, table.together if together is None else together)
@@ -134,19 +127,13 @@ def shown(
 
     members : what they are called. under_way : more words on those under way.
     """
-    began = said = time.monotonic()
+    began, is_due = time.monotonic(), seldom()
 
     def line(standing: Standing) -> str:
         return f"{name}: {_in_words(standing, time.monotonic() - began, members, under_way(standing))}"
 
-    def say(standing: Standing) -> None:
-        nonlocal said
-        if (now := time.monotonic()) - said >= INTERVAL:
-            said = now
-            err.print(line(standing))
-
     if not err.is_terminal:
-        yield say
+        yield lambda standing: err.print(line(standing)) if is_due() else None
         return
     with err.status(f"{name}: preparing") as status:
         yield lambda standing: status.update(line(standing))
@@ -165,10 +152,8 @@ def _in_words(standing: Standing, elapsed: float, members: str = "members", more
 
 def _duration(seconds: float) -> str:
     """A time in s, min or h."""
-    for unit, size in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} s"
+    unit, size = next((each for each in (("h", 3600.0), ("min", 60.0)) if seconds >= 2.0 * each[1]), ("s", 1.0))
+    return f"{seconds / size:.0f} {unit}"
 
 
 def _print(swept: Swept) -> bool:
@@ -231,8 +216,7 @@ def _leave(swept: Swept, folder: Path, title: str | None) -> None:
     from dembound.files import remove
     from dembound.studies.sweep.tables import write_tables
 
-    for path in write_tables(swept, folder):
-        out.print(f"wrote {path}")
+    print_written(*write_tables(swept, folder))
     remove(folder / "sweep.png")
     if swept.shown:
         from dembound.plot.stability import plot_sweep
@@ -242,10 +226,10 @@ def _leave(swept: Swept, folder: Path, title: str | None) -> None:
 
 @app.command("library", rich_help_panel=MORE)
 def library(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
-    spacing: Annotated[float, typer.Option(help="Time between two values of the records (s).", min=1e-12)],
+    path: Annotated[Path, Argument(metavar="CASE", help="Case file (TOML) of disks under the elastic law.")],
+    spacing: Annotated[float, Option(help="Time between two values of the records (s).", min=1e-12)],
     duration: Annotated[
-        float | None, typer.Option(help="Length of the longest record (s); by default that of the case.", min=1e-12)
+        float | None, Option(help="Length of the longest record (s); by default that of the case.", min=1e-12)
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -269,10 +253,10 @@ def library(
 
 @app.command("respond", rich_help_panel=MORE)
 def respond(
-    folder: Annotated[Path, typer.Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
+    folder: Annotated[Path, Argument(metavar="LIBRARY", help="Folder written by `dembound library`.")],
     records: Annotated[
         list[str],
-        typer.Argument(
+        Argument(
             metavar="RECORD...",
             help="Text files of time (s) and velocity (m/s); of a library with several inputs INPUT=FILE,INPUT=FILE.",
         ),
@@ -280,7 +264,7 @@ def respond(
     output: Output = Path("results"),
     contacts: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             "--load-factor",
             metavar="MONITOR,MONITOR",
             help="Print the load factor of each record at the contact between the disks of two monitors. May be "

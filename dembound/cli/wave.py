@@ -10,9 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import typer
 from rich.table import Table
 from rich.text import Text
+from typer import Argument, Option
 
 from dembound.cli.app import MORE, app, ending_in, png
 from dembound.cli.console import compact_table, err, out
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from dembound.records.formats import Reading
     from dembound.records.processing import Motion, Processing
 
-_step = partial(typer.Option, rich_help_panel="Processing")
-_given = partial(typer.Option, rich_help_panel="Files that state too little")
+_step = partial(Option, rich_help_panel="Processing")
+_given = partial(Option, rich_help_panel="Files that state too little")
 
 HEADS = (
     *("com-\nponent", "sam-\nples", "rate\n(Hz)", "PGA\n(m/s²)", "PGA\n(g)", "PGV\n(m/s)", "PGD\n(m)"),
@@ -37,8 +37,7 @@ HEADS = (
 class Kind(StrEnum):
     """Kinds of waves; an enumeration, as lists of options need one."""
 
-    s = "s"
-    p = "p"
+    s, p = "s", "p"
 
 
 Damping = Literal["as_run", "hysteretic", "constant_q"]
@@ -86,15 +85,9 @@ class ProcessingOptions:
         kept = windowed(channel, self.begin, self.end)
         base = Processing() if self.raw else usual(kept.time_step * len(kept.values))
         high = base.filters.high_pass if self.high_pass is None else self.high_pass or None
-        return Processing(
-            self.begin,
-            self.end,
-            self.baseline or base.baseline,
-            base.taper if self.taper is None else self.taper,
-            replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order),
-            self.pga,
-            self.scale,
-        )
+        filters = replace(base.filters, high_pass=high, low_pass=self.low_pass, order=self.order)
+        baseline, taper = self.baseline or base.baseline, base.taper if self.taper is None else self.taper
+        return Processing(self.begin, self.end, baseline, taper, filters, self.pga, self.scale)
 
 
 @dataclass(frozen=True)
@@ -124,20 +117,15 @@ class GroundOptions:
 
     deconvolve: Annotated[
         Path | None,
-        typer.Option(
-            metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."
-        ),
+        Option(metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."),
     ] = None
     kinds: Annotated[
         list[Kind] | None,
-        typer.Option(
-            "--as",
-            help="Kind of wave of each component in --deconvolve; by default the case's only one.",
-        ),
+        Option("--as", help="Kind of wave of each component in --deconvolve; by default the case's only one."),
     ] = None
     damping: Annotated[
         Damping,
-        typer.Option(
+        Option(
             metavar="DAMPING",
             help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q), as in equivalent-linear programs; or constant_q, "
             "causal.",
@@ -145,10 +133,8 @@ class GroundOptions:
     ] = "as_run"
     transfer: Annotated[
         Path | None,
-        typer.Option(
-            metavar="NAME.png",
-            help="Transfer functions of the ground in --deconvolve (PNG and CSV).",
-            callback=png,
+        Option(
+            metavar="NAME.png", help="Transfer functions of the ground in --deconvolve (PNG and CSV).", callback=png
         ),
     ] = None
 
@@ -192,13 +178,11 @@ _csv = ending_in(".csv")
 @app.command("wave", rich_help_panel=MORE)
 @with_tables
 def wave(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
-    component: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="This component only. May be repeated.")
-    ] = None,
+    file: Annotated[Path, Argument(metavar="FILE", help="Record: AT2, V1, V2, K-NET, CSV and others.")],
+    component: Annotated[list[str] | None, Option(metavar="NAME", help="This component only. May be repeated.")] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
+        Option(
             "--output",
             "-o",
             metavar="NAME.csv",
@@ -206,13 +190,11 @@ def wave(
             callback=_csv,
         ),
     ] = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Picture (PNG); by default that of the wave.", callback=png)
-    ] = None,
+    picture: Annotated[Path | None, Option(help="Picture (PNG); by default that of the wave.", callback=png)] = None,
     *,
     ground: GroundOptions,
     table: Annotated[
-        Path | None, typer.Option(metavar="NAME.csv", help="Curves of the picture (CSV).", callback=_csv)
+        Path | None, Option(metavar="NAME.csv", help="Curves of the picture (CSV).", callback=_csv)
     ] = None,
     reading: ReadingOptions,
     processing: ProcessingOptions,
@@ -288,15 +270,11 @@ def _table(channels: Sequence[Channel], motions: Sequence[Motion], options: Proc
         table.add_column(Text(head), justify="left" if head == HEADS[0] else "right")
     for channel, motion in zip(channels, motions, strict=True):
         found, (low, high) = measures_of(motion), usable_band(channel, options.of(channel))
-        table.add_row(
-            motion.component or "-",
-            f"{len(motion.time)}",
-            f"{1.0 / motion.time_step:.4g}",
-            *(f"{value:.3g}" for value in (found.pga, found.pga / STANDARD_GRAVITY, found.pgv, found.pgd, found.arias)),
-            f"{found.duration:.3g}",
-            *(f"{value + 0.0:.1g}" for value in (found.final_velocity, found.final_displacement)),
-            f"{low:.2g}-{high:.2g}" if low < high else "none",
-        )
+        sampling = f"{len(motion.time)}", f"{1.0 / motion.time_step:.4g}"
+        sizes = found.pga, found.pga / STANDARD_GRAVITY, found.pgv, found.pgd, found.arias, found.duration
+        left = (f"{value + 0.0:.1g}" for value in (found.final_velocity, found.final_displacement))
+        band = f"{low:.2g}-{high:.2g}" if low < high else "none"
+        table.add_row(motion.component or "-", *sampling, *(f"{value:.3g}" for value in sizes), *left, band)
     return table
 
 

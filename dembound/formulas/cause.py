@@ -104,14 +104,9 @@ class Causes:
 
     def __add__(self, other: Causes) -> Causes:
         """The causes, limits and notes of both."""
-        return Causes(
-            [*self.found, *other.found],
-            [*self.limits, *other.limits],
-            [*self.notes, *other.notes],
-            self.cost + other.cost,
-            self.echo_free or other.echo_free,
-            self.motions if other.motions is None else other.motions,
-        )
+        found, limits, notes = [*self.found, *other.found], [*self.limits, *other.limits], [*self.notes, *other.notes]
+        motions = self.motions if other.motions is None else other.motions
+        return Causes(found, limits, notes, self.cost + other.cost, self.echo_free or other.echo_free, motions)
 
     @property
     def unknown(self) -> list[Cause]:

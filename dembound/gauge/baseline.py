@@ -8,7 +8,6 @@ if they take less than half of the time; then selection of quiet samples and fit
 waves only an offset is fitted, to its beginning.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -52,40 +51,35 @@ class Filters:
         rate = (len(time) - 1) / float(time[-1] - time[0])
         self.require(rate, len(time))
         notes = []
-        for corner, kind in ((self.high_pass, "highpass"), (self.low_pass, "lowpass")):
+
+        def both_ways(sections: np.ndarray, length: float) -> np.ndarray:
+            """The signal, continued at its ends by its mirror images over the length of the response."""
+            return np.asarray(sosfiltfilt(sections, values, padlen=min(len(values) - 1, int(3.0 * length))))
+
+        for corner, kind in ((self.high_pass, "high"), (self.low_pass, "low")):
             if corner is not None:
-                values = _padded(
-                    sosfiltfilt, butter(self.order, corner, kind, fs=rate, output="sos"), values, rate / corner
-                )
-                words = f"{kind.removesuffix('pass')} pass at {corner:g} Hz (6 dB)"
-                notes.append(f"filter: {words}, Butterworth of order {self.order} forwards and backwards")
+                values = both_ways(butter(self.order, corner, kind, fs=rate, output="sos"), rate / corner)
+                words = f"{kind} pass at {corner:g} Hz (6 dB), Butterworth of order {self.order}"
+                notes.append(f"filter: {words} forwards and backwards")
         for notch in self.notches:
-            sections = tf2sos(*iirnotch(notch, QUALITY, fs=rate))
-            values = _padded(sosfiltfilt, sections, values, QUALITY * rate / notch)
+            values = both_ways(tf2sos(*iirnotch(notch, QUALITY, fs=rate)), QUALITY * rate / notch)
             notes.append(f"filter: notch at {notch:g} Hz, {notch / QUALITY:g} Hz wide, forwards and backwards")
         return values, notes
 
     def require(self, rate: float, count: int) -> None:
         """Raise CaseError for corners that a record of so many samples does not have; rate : of them, Hz."""
-        if problems := list(self._problems(rate, count)):
-            raise CaseError(problems)
-
-    def _problems(self, rate: float, count: int) -> Iterator[str]:
-        """Corners that are impossible in this record."""
-        corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass)]
-        corners += [("--notch", notch) for notch in self.notches]
-        for option, corner in corners:
-            if corner is not None and not PERIODS * rate / count <= corner < 0.5 * rate:
-                least, most = PERIODS * rate / count, 0.5 * rate
-                yield f"{option}: is {corner:g} Hz, must be from {least:.3g} to below {most:.3g} Hz in this record"
-        low, high = self.low_pass, self.high_pass
+        low, high, least, most = self.low_pass, self.high_pass, PERIODS * rate / count, 0.5 * rate
+        corners = [("--low-pass", low), ("--high-pass", high), *(("--notch", notch) for notch in self.notches)]
+        must = f"must be from {least:.3g} to below {most:.3g} Hz in this record"
+        problems = [
+            f"{option}: is {corner:g} Hz, {must}"
+            for option, corner in corners
+            if corner is not None and not least <= corner < most
+        ]
         if low is not None and high is not None and not high < low:
-            yield f"--high-pass: is {high:g} Hz, must be below the low pass, {low:g} Hz"
-
-
-def _padded(filtfilt, sections: np.ndarray, values: np.ndarray, length: float) -> np.ndarray:  # type: ignore[no-untyped-def]
-    """A signal filtered both ways, continued at its ends by its mirror images over the length of the response."""
-    return filtfilt(sections, values, padlen=min(len(values) - 1, int(3.0 * length)))
+            problems.append(f"--high-pass: is {high:g} Hz, must be below the low pass, {low:g} Hz")
+        if problems:
+            raise CaseError(problems)
 
 
 LEAST, SIGNIFICANT = 0.003, 5.0
@@ -184,7 +178,9 @@ def _settled(values: np.ndarray, terms: np.ndarray, fit: np.ndarray, *, only_bef
         if quiet.sum() < FEWEST_QUIET:
             return None
         used, fit = terms[:, :1], np.full(len(values), values[quiet].mean())
-        if _is_spread(quiet):
+        places = np.flatnonzero(quiet)
+        # over enough of the record, in its last part too, to show a drift
+        if np.ptp(places) > SPREAD * len(quiet) and np.mean(places > 0.5 * len(quiet)) > 0.1:
             line = terms @ np.linalg.lstsq(terms[quiet], values[quiet], rcond=None)[0]
             least, most = (float(np.sum((values - each)[quiet] ** 2)) for each in (line, fit))
             if most - least > SIGNIFICANT**2 * least / quiet.sum():
@@ -204,12 +200,6 @@ def _absolute_fit(terms: np.ndarray, values: np.ndarray) -> np.ndarray:
         shares = np.linalg.lstsq(few * weights[:, None], tried * weights, rcond=None)[0]
         weights = 1.0 / np.sqrt(np.maximum(np.abs(tried - few @ shares), 1e-4 * np.ptp(values)))
     return terms @ shares
-
-
-def _is_spread(quiet: np.ndarray) -> bool:
-    """Whether quiet samples extend over enough of the record, in its last part too, to show a drift."""
-    places = np.flatnonzero(quiet)
-    return bool(np.ptp(places) > SPREAD * len(quiet) and np.mean(places > 0.5 * len(quiet)) > 0.1)
 
 
 def _in_words(found: Baseline | None, signal: Signal) -> str:

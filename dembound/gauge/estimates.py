@@ -127,7 +127,7 @@ def near_free_end(
     gauge: float,
     length: float,
     speed: float,
-    positions: np.ndarray,
+    positions: Any,
     at_times: np.ndarray,
 ) -> np.ndarray:
     """Stress (q, k) at q positions (m) and k times (s) near a free end, without attenuation: a pulse and its image.
@@ -141,8 +141,9 @@ def near_free_end(
     speed : c, m/s.
     positions, at_times : (q,) m and (k,) s.
     """
-    direct, mirrored = _delays(gauge, length, speed, np.asarray(positions, dtype=float)[:, None])
-    return _pulse(time, stress, at_times - direct) - _pulse(time, stress, at_times - mirrored)
+    delays = _delays(gauge, length, speed, np.asarray(positions, dtype=float)[:, None])
+    direct, mirrored = (np.interp(at_times - delay, time, stress, left=0.0, right=0.0) for delay in delays)
+    return np.asarray(direct - mirrored)
 
 
 def nominal_strength(
@@ -220,8 +221,3 @@ def rise(values: np.ndarray) -> tuple[int, int]:
 def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:
     """Travel times in s from the gauge to a position (any shape): directly, and via the free end."""
     return (position - gauge) / speed, path_via_free_end(gauge, length, position) / speed
-
-
-def _pulse(time: np.ndarray, stress: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """A pulse interpolated at other times, zero before and after."""
-    return np.interp(at, time, stress, left=0.0, right=0.0)

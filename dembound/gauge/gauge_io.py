@@ -70,10 +70,10 @@ def require_for_results(
 
 def recorded_gauge(
     path: Path, name: str | None
-) -> tuple[np.ndarray, np.ndarray, float, float, float | None, BarMetadata | None]:
-    """Time (k,) s and stress (k,) Pa of a monitor, its position and the bar's length, m, and density, kg/m³, its bar.
+) -> tuple[Signal, tuple[float, float, float | None], BarMetadata | None]:
+    """The stress at a monitor, its position and the bar's length, m, and density, kg/m³, and data of the bar.
 
-    The last two are None where the record does not have them.
+    The density and the last are None where the record does not have them.
     """
     with open_record(path) as file:
         group = _gauge(file, name)
@@ -83,7 +83,8 @@ def recorded_gauge(
         if "range" in group.attrs:
             raise CaseError([f"{path}: has a bar of several ranges, must have one without interfaces"])
         density = None if "density" not in file.attrs else float(file.attrs["density"])
-        return time, stress, _from_loaded_end(file, group), bar_length(file), density, bar_metadata(file)
+        bar = _from_loaded_end(file, group), bar_length(file), density
+        return Signal(time, stress, "Pa"), bar, bar_metadata(file)
 
 
 def recorded_free_end(path: Path, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -226,12 +227,9 @@ def read_gauge(
     reading = reading or Reading()
     if is_record(path):
         require_for_results(path, reading, column=reading.column, modulus=modulus)
-        found = recorded_gauge(path, monitor)
-        signal, metadata = Signal(*found[:2], "Pa"), found[5]
-        position, length, density = (
-            known if given is None else given
-            for given, known in zip((position, length, density), found[2:5], strict=True)
-        )
+        signal, bar, metadata = recorded_gauge(path, monitor)
+        both = zip((position, length, density), bar, strict=True)
+        position, length, density = (known if given is None else given for given, known in both)
         treatment = treatment and replace(treatment, baseline=False)
     else:
         signal, metadata = read_signal(path, reading), None
@@ -322,17 +320,13 @@ def unfit_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterato
         yield f"the signal is noise: its largest value is {sizes.max() / noise:.2g} standard deviations, and no wave"
         return
     if (width := width_of(np.abs(values))) < COARSE:
-        yield (
-            f"the sampling is too coarse: the largest wave has {width} samples above half its height, needs {COARSE}; "
-            "or it is a spike"
-        )
+        has = f"the largest wave has {width} samples above half its height, needs {COARSE}"
+        yield f"the sampling is too coarse: {has}; or it is a spike"
     for sense, extreme in ((1.0, "largest"), (-1.0, "smallest")):
         if not may_be_clipped and (count := clipped(sense * values)):
-            value = sense * float((sense * values).max())
-            yield (
-                f"the signal is clipped: {count} samples in a row have its {extreme} value, {value:.4g}; record it "
-                "with a larger range, or allow it with --clipped if it is the wave's own plateau"
-            )
+            row = f"{count} samples in a row have its {extreme} value, {sense * float((sense * values).max()):.4g}"
+            advice = "record it with a larger range, or allow it with --clipped if it is the wave's own plateau"
+            yield f"the signal is clipped: {row}; {advice}"
 
 
 def clipped(values: np.ndarray) -> int:

@@ -209,9 +209,9 @@ def read_strain(
     if signal.unit not in ("strain", "Pa"):
         said = f"are in {signal.unit}" if signal.unit else "have no known unit in the header"
         raise CaseError([f"{path}: the values {said}, needs strains or stresses: --gauge-factor, --unit or --scale"])
-    if not recorded and (problems := list(unfit_signal(signal.values, may_be_clipped=may_be_clipped))):
-        raise CaseError([f"{path}: {problem}" for problem in problems])
     if not recorded:
+        if problems := list(unfit_signal(signal.values, may_be_clipped=may_be_clipped)):
+            raise CaseError([f"{path}: {problem}" for problem in problems])
         signal = treated(signal, treatment)
     elif treatment is not None:
         signal = treated(signal, replace(treatment, baseline=False))
@@ -248,9 +248,8 @@ def combined(incident: Signal, transmitted: Signal, *, opposite: bool = False) -
     sign = float(np.sign(values[np.argmax(np.abs(values) > RISEN * np.abs(values).max())]))
     behind = (-sign if opposite else sign) * np.interp(time, transmitted.time, transmitted.values)
     if not behind.max() > -behind.min():
-        raise CaseError(
-            ["TRANSMITTED: its sign is opposite to that of the incident pulse; if it is wired so, --opposite"]
-        )
+        said = "its sign is opposite to that of the incident pulse"
+        raise CaseError([f"TRANSMITTED: {said}; if it is wired so, --opposite"])
     return Signals(time, sign * values, behind)
 
 

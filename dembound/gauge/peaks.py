@@ -70,6 +70,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     values : (k,) in any unit.
     count : number of first peaks to use; all by default.
     """
+    from scipy.signal import find_peaks  # imported here, as it takes a second and other commands do not need it
+
     if not values.max() > 0.0:
         return Peaks(np.empty(0), np.empty(0))
     width = width_of(values)
@@ -77,7 +79,8 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     smoothed = smooth(values, reach)
     noise = NOISE_FACTOR * white_noise(values) * noise_left(reach)
     least = max(SMALLEST * smoothed.max(), noise, LEVELS * digit(values))
-    places = _summits(np.maximum(smoothed, 0.0), prominence=least, width=0.5 * width, distance=width)[:count]
+    summits, _ = find_peaks(np.maximum(smoothed, 0.0), prominence=least, width=0.5 * width, distance=width)
+    places = summits[:count]
     before, here, after = (smoothed[places + shift] for shift in (-1, 0, 1))
     bend = before - 2.0 * here + after
     offset = np.divide(0.5 * (before - after), bend, out=np.zeros(len(places)), where=bend != 0.0)
@@ -189,13 +192,6 @@ def _turns(values: np.ndarray, least: float) -> list[int]:
     return found[1:]
 
 
-def _summits(values: np.ndarray, **limits: float) -> np.ndarray:
-    """Samples that are higher than their neighbours, within the limits of `scipy.signal.find_peaks`."""
-    from scipy.signal import find_peaks  # imported here, as it takes a second and other commands do not need it
-
-    return find_peaks(values, **limits)[0]
-
-
 def width_of(values: np.ndarray) -> int:
     """Number of samples around the largest that are above half of it."""
     crest = int(values.argmax())
@@ -277,7 +273,8 @@ def matched(time: np.ndarray, values: np.ndarray, peaks: Peaks) -> Peaks:
     reach = max(1, round(CREST * width))
     smoothed = smooth(values, reach)
     places = np.rint(np.interp(peaks.time, time, np.arange(len(time)))).astype(int)
-    first, last = _extent(smoothed, places[0])
+    low = np.flatnonzero(smoothed < FOOT * smoothed[places[0]])
+    first, last = int(low[low < places[0]].max(initial=-1)) + 1, int(low[low > places[0]].min(initial=len(values)))
     shape = smoothed[first:last]
     step = float(time[1] - time[0])
     times, heights = peaks.time.copy(), peaks.height.copy()
@@ -293,9 +290,3 @@ def matched(time: np.ndarray, values: np.ndarray, peaks: Peaks) -> Peaks:
         times[index] = peaks.time[0] + step * (shifts[best] + offset)
         heights[index] = peaks.height[0] * (here - 0.25 * (before - after) * offset)
     return Peaks(times, heights) if (heights > 0.0).all() else peaks
-
-
-def _extent(values: np.ndarray, crest: int) -> tuple[int, int]:
-    """First sample of the peak around a crest, and the one after its last."""
-    low = np.flatnonzero(values < FOOT * values[crest])
-    return int(low[low < crest].max(initial=-1)) + 1, int(low[low > crest].min(initial=len(values)))

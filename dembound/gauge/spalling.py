@@ -92,10 +92,14 @@ def evaluate(
     if problems:
         raise CaseError(problems)
     peaks, passing, decay = _waves(gauge, speed, coefficient, count)
-    strength = None
+    strength = pull_back = None
     if spall is not None:
         strength = _strength(gauge.in_pascals(passing.value), passing.value, decay, spall, pulse_end)
-    pull_back = None if free_end is None else _pull_back(gauge, passing.value, free_end)
+    if free_end is not None and gauge.density is not None:
+        pull_back = estimates.pull_back_strength(*free_end, gauge.density, passing.value, gauge.length)
+        if np.isnan(pull_back):
+            must = "must fall and rise again before the pulse is back there, as where a bar spalls"
+            raise CaseError([f"--free-end: {must}"])
     return Findings(peaks, passing, decay, strength, pull_back)
 
 
@@ -184,12 +188,3 @@ def _strength(gauge: Gauge, speed: float, decay: Estimate | None, position: floa
     by_decay = attenuated * way * decay.error if decay.points else 0.0
     both = float(np.hypot(estimates.attenuated_strength(error, decay.value, way), by_decay))
     return Strength(position, nominal, time, way, attenuated, pulse, error, both)
-
-
-def _pull_back(gauge: Gauge, speed: float, free_end: tuple[np.ndarray, np.ndarray]) -> float:
-    """Strength in Pa from the velocity of the free end, m/s."""
-    assert gauge.density is not None
-    found = estimates.pull_back_strength(*free_end, gauge.density, speed, gauge.length)
-    if np.isnan(found):
-        raise CaseError(["--free-end: must fall and rise again before the pulse is back there, as where a bar spalls"])
-    return found

@@ -16,14 +16,9 @@ def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
 
     Raises CaseError if there are none.
     """
-    found = [
-        (side, motion)
-        for side, table in case.boundary.items()
-        for motion in get_args(Motion)
-        if motion in table.factors
-        and not table.is_interface
-        and "xy"[axis_of_motion(side, motion)] not in case.motion.held
-    ]
+    tables = {side: table for side, table in case.boundary.items() if not table.is_interface}
+    each = [(side, motion) for side, table in tables.items() for motion in get_args(Motion) if motion in table.factors]
+    found = [(side, motion) for side, motion in each if "xy"[axis_of_motion(side, motion)] not in case.motion.held]
     if not found:
         which = "has no side with dashpots that can move, but for those on rock"
         raise CaseError([f"boundary: {which}, so there is nothing to calibrate"])
@@ -47,10 +42,5 @@ def changes_of(found: Sequence[Calibration]) -> dict[str, float]:
 
 def summary_of(found: Sequence[Calibration]) -> Mapping[str, Any]:
     """All calibrations of one case as plain JSON values: the factors by key, and the summary of each calibration."""
-    return {
-        "name": found[0].case.name,
-        "version": __version__,
-        "method": found[0].method,
-        "result": changes_of(found),
-        "calibrations": [each.summary() for each in found],
-    }
+    of = {"name": found[0].case.name, "version": __version__, "method": found[0].method}
+    return of | {"result": changes_of(found), "calibrations": [each.summary() for each in found]}

@@ -112,35 +112,18 @@ class Calibration:
 
     def summary(self) -> dict[str, Any]:
         """The passes and the result as plain JSON values."""
-        return {
-            "name": self.case.name,
-            "version": __version__,
-            "boundary": self.side,
-            "wave": self.motion,
-            "kind": self.kind,
-            "method": self.method,
-            "incident": self.incident,
-            "result": self.result,
-            "beta": self.beta,
-            "outgoing": self.outgoing,
-            "ratio": self.ratio,
-            "particles": self.particles,
-            "steps": self.steps,
-            "reduced": self.shortened,
-            "compared": self.compared,
-        }
+        of = {"name": self.case.name, "version": __version__, "boundary": self.side, "wave": self.motion}
+        own = ("kind", "method", "incident", "result", "beta", "outgoing", "ratio", "particles", "steps")
+        found = {name: getattr(self, name) for name in own}
+        return of | found | {"reduced": self.shortened, "compared": self.compared}
 
     def write(self, path: Path) -> None:
         """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
         with new_file(path) as file:
             scalars = {key: value for key, value in self.summary().items() if not isinstance(value, list)}
             describe(file, {**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
-            for name, values, unit in (
-                ("beta", self.beta, "1"),
-                ("outgoing", self.outgoing, "m/s"),
-                ("ratio", self.ratio, "1"),
-            ):
-                write(file, name, np.array(values), unit)
+            for name, unit in (("beta", "1"), ("outgoing", "m/s"), ("ratio", "1")):
+                write(file, name, np.array(getattr(self, name)), unit)
 
 
 Report = Callable[[Calibration], None]
@@ -287,30 +270,23 @@ def _next_beta(found: Calibration) -> float:
 
 
 def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine) -> tuple[float, int]:
-    """M_out of one run (m/s) and its number of steps."""
-    simulation = Simulation(reduced(scene).scene, time_step)
-    due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
+    """M_out of one run (m/s) and its number of steps.
+
+    Raises RunError if the pulse at an input side has not passed its peak when the pass ends.
+    """
+    side, axis, along = found.side, scene.edges[found.side].axis, axis_of_motion(found.side, found.motion)
+    simulation, due = Simulation(reduced(scene).scene, time_step), pulse.peak_time()
+    if found.kind == "absorbing":  # the way from the opposite side
+        due += float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if found.motion == "p" else 1]
     simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
-    peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]
-    _must_be_past(simulation, found, float(peaks.mean()))
-    return float(peaks.mean()), simulation.state.step
-
-
-def _must_be_past(simulation: Simulation, found: Calibration, peak: float) -> None:
-    """Raise RunError if the pulse at an input side has not passed its peak (m/s) when a pass ends."""
-    scene = simulation.scene
-    velocity = simulation.state.velocity[axis_of_motion(found.side, found.motion), scene.edges[found.side].nodes]
+    peak = float(simulation.edge_peaks(side)[:, along, 1].mean())
+    velocity = simulation.state.velocity[along, simulation.scene.edges[side].nodes]
     if found.kind == "input" and np.abs(velocity).mean() >= PAST * peak:
         raise RunError(
-            f"calibration of {found.side}: the pulse is not past its peak after {simulation.time:.4g} s, when a pass "
-            f'ends; "{scene.case.side(found.side).type}" transmits its waves late or not at all'
+            f"calibration of {side}: the pulse is not past its peak after {simulation.time:.4g} s, when a pass "
+            f'ends; "{scene.case.side(side).type}" transmits its waves late or not at all'
         )
-
-
-def _travel(scene: DiskScene, side: str, motion: Motion) -> float:
-    """Time (s) a wave takes from the opposite side."""
-    axis = scene.edges[side].axis
-    return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+    return peak, simulation.state.step
 
 
 def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -> Motion:
@@ -321,13 +297,14 @@ def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -
     table = case.side(side)
     if not table.factors:
         usable = ", ".join(name for name, other in case.boundary.items() if other.factors) or "none"
-        raise CaseError(
-            [f"boundary.{side}: is {table.type}, only sides with dashpots can be calibrated; here: {usable}"]
-        )
+        said = f"is {table.type}, only sides with dashpots can be calibrated; here: {usable}"
+        raise CaseError([f"boundary.{side}: {said}"])
     if table.is_interface:
         raise CaseError([f"boundary.{side}.rock: gives the factors of this side, which needs no calibration"])
     motion = motion or default_motion(case, side)
-    _must_move(case, side, motion)
+    name = "xy"[axis_of_motion(side, motion)]
+    if name in case.motion.held:
+        raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
     return motion
 
 
@@ -336,9 +313,3 @@ def default_motion(case: DiskCase, side: str) -> Motion:
     driven = {motion for end in (side, OPPOSITE[side]) for motion in case.side(end).waves}
     held = "xy"[normal_axis(side)] in case.motion.held
     return "s" if held or driven == {"s"} else "p"
-
-
-def _must_move(case: DiskCase, side: str, motion: Motion) -> None:
-    name = "xy"[axis_of_motion(side, motion)]
-    if name in case.motion.held:
-        raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])

@@ -25,16 +25,8 @@ from dembound.motion.simulation import Simulation
 from dembound.results.text_files import write_csv
 
 COLUMNS = (
-    "horizon",
-    "spacing",
-    "time_step",
-    "wave_speed",
-    "shares",
-    "wavenumber",
-    "cells_per_wavelength",
-    "frequency_hz",
-    "phase_velocity",
-    "group_velocity",
+    *("horizon", "spacing", "time_step", "wave_speed", "shares"),
+    *("wavenumber", "cells_per_wavelength", "frequency_hz", "phase_velocity", "group_velocity"),
 )
 """Columns of the table; SI units, wave numbers in rad/m.
 
@@ -96,18 +88,16 @@ def measure(lattice: Lattice, wavenumbers: np.ndarray) -> np.ndarray:
     during the simulation. Its displacements u and their second differences δ²u give sin²(ωΔt/2) = −¼ Σu δ²u/Σu²,
     without any formula for ω. The lattice must be stable and have a time step.
     """
-    return np.array([_frequency(lattice, wavenumber) for wavenumber in wavenumbers])
-
-
-def _frequency(lattice: Lattice, wavenumber: float) -> float:
-    """Angular frequency (rad/s) at one wave number (rad/m)."""
-    simulation = Simulation(build_bar(_endless(lattice)), lattice.time_step, [lattice.horizon * STEPS])
-    x = simulation.scene.positions[:, 0]
-    simulation.state.u[0] = np.cos(wavenumber * (x - x[lattice.horizon * STEPS]))
-    u = simulation.advance(STEPS)[:, 0, 0]
-    square = -0.25 * np.sum(u[1:-1] * np.diff(u, 2)) / np.sum(u[1:-1] ** 2)
-    sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may make it larger than 1
-    return float(2.0 * np.arcsin(sine) / lattice.time_step)
+    scene, middle, found = build_bar(_endless(lattice)), lattice.horizon * STEPS, []
+    x = scene.positions[:, 0]
+    for wavenumber in wavenumbers:
+        simulation = Simulation(scene, lattice.time_step, [middle])
+        simulation.state.u[0] = np.cos(wavenumber * (x - x[middle]))
+        u = simulation.advance(STEPS)[:, 0, 0]
+        square = -0.25 * np.sum(u[1:-1] * np.diff(u, 2)) / np.sum(u[1:-1] ** 2)
+        sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may make it larger than 1
+        found.append(2.0 * np.arcsin(sine) / lattice.time_step)
+    return np.array(found)
 
 
 class _Bonded(Peridynamics):
@@ -125,17 +115,11 @@ class _Bonded(Peridynamics):
 
 def _endless(lattice: Lattice) -> BarCase:
     """A bar so long that its ends do not affect its middle within STEPS steps."""
-    tables = {
-        "bar": {
-            "length": 2 * lattice.horizon * STEPS * lattice.spacing,
-            "spacing": lattice.spacing,
-            "density": 1.0,
-            "wave_speed": lattice.wave_speed,
-        },
-        "method": {"type": "finite_difference"},
-        "run": {"duration": STEPS * lattice.time_step, "time_step": lattice.time_step},
-    }
-    case = as_kind(loads(tomli_w.dumps(tables), (SCHEMA,), Path(), "endless"), BarCase, "is no bar")
+    length, step = 2 * lattice.horizon * STEPS * lattice.spacing, lattice.time_step
+    bar = {"length": length, "spacing": lattice.spacing, "density": 1.0, "wave_speed": lattice.wave_speed}
+    run = {"duration": STEPS * step, "time_step": step}
+    text = tomli_w.dumps({"bar": bar, "method": {"type": "finite_difference"}, "run": run})
+    case = as_kind(loads(text, (SCHEMA,), Path(), "endless"), BarCase, "is no bar")
     if lattice.horizon == 1:
         return case
     shares = lattice.shares or usual_shares(lattice.horizon)
@@ -153,13 +137,9 @@ def write_table(rows: Sequence[Lattice], path: Path) -> None:
 def _lines(lattice: Lattice) -> Iterator[list[str]]:
     """The lines of one lattice."""
     wavenumber = lattice.shortest * np.arange(1, ROWS + 1) / ROWS
-    columns = (
-        wavenumber,
-        2.0 * lattice.shortest / wavenumber,
-        lattice.frequency(wavenumber) / (2.0 * np.pi),
-        lattice.phase_velocity(wavenumber),
-        lattice.group_velocity(wavenumber),
-    )
+    hertz = lattice.frequency(wavenumber) / (2.0 * np.pi)
+    speeds = lattice.phase_velocity(wavenumber), lattice.group_velocity(wavenumber)
+    columns = wavenumber, 2.0 * lattice.shortest / wavenumber, hertz, *speeds
     same = [str(value) for value in (lattice.horizon, lattice.spacing, lattice.time_step, lattice.wave_speed)]
     same.append("/".join(f"{share:.10g}" for share in lattice.shares or ()))
     for numbers in zip(*columns, strict=True):

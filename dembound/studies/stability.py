@@ -156,10 +156,7 @@ def _of_ledger(ledger: Ledger) -> list[float]:
     taken by boundaries, without the energy added by a change of law.
     """
     first, *others = ledger.entries
-    energy = [
-        entry.kinetic + entry.contact + entry.bond + entry.stepping - entry.balance - entry.outside - entry.law_switch
-        for entry in others
-    ]
+    energy = [e.kinetic + e.contact + e.bond + e.stepping - e.balance - e.outside - e.law_switch for e in others]
     return [1.0 + (each - energy[0]) / first.kinetic for each in energy]
 
 
@@ -299,12 +296,9 @@ def measure(
     if steps is None:
         cost = 1e-9 * sum(trial.step_cost for trial in runs)
         steps = int(np.clip(LONG / cost // 1000 * 1000, LEAST, MOST))
-    return [_measured(trial, steps, _samples(len(runs)), say) for trial in chosen], words
-
-
-def _samples(runs: int) -> int:
-    """Samples of each of some long runs, about `SAMPLES` in all, at which thousands of steps end."""
-    return next((each for each in (500, 250, 125, 100) if each * runs <= SAMPLES), 50)
+    # samples of each long run, about `SAMPLES` in all, at which thousands of steps end
+    samples = next((each for each in (500, 250, 125, 100) if each * len(runs) <= SAMPLES), 50)
+    return [_measured(trial, steps, samples, say) for trial in chosen], words
 
 
 def _measured(trial: Trial, steps: int, samples: int, say: Report) -> Stability:

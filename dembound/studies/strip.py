@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -103,18 +104,8 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
         "no loads": bool(case.load),
         f"the {material.law} law": given.material.law != material.law,
     }
-    plain = replace(
-        case,
-        boundary=boundary,
-        material=material,
-        static=None,
-        group=(),
-        hole=(),
-        wall=(),
-        joint=(),
-        load=(),
-        ground=case.ground.level(),
-    )
+    none: dict[str, Any] = dict.fromkeys(("group", "hole", "wall", "joint", "load"), ())
+    plain = replace(case, boundary=boundary, material=material, static=None, ground=case.ground.level(), **none)
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 
 
@@ -139,9 +130,8 @@ def full_scene(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tupl
     axis = normal_axis(side)
     least, length = _least_length(case, axis, motion, pulse), case.packing.extent[axis]
     if length < least:
-        raise CaseError(
-            [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
-        )
+        late = f"echoes need {least:.4g} m to come late enough"
+        raise CaseError([f"--full: the scene is {length:g} m long, {late}; leave it out"])
     return driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
 
 

@@ -72,11 +72,8 @@ class Record:
             for name in () if found.failure else monitors:
                 if name not in found.motions or quantity not in found.motions[name].values:
                     raise _damaged(group, f"{quantity} at {name}")
-            found.findings = {
-                name: Finding(float(value[()]), text_of(value.attrs["unit"]))
-                for name, value in group["findings"].items()
-                if value.shape == ()
-            }
+            numbers = {name: value for name, value in group["findings"].items() if value.shape == ()}
+            found.findings = {n: Finding(float(v[()]), text_of(v.attrs["unit"])) for n, v in numbers.items()}
             found.cpu, found.wall = (_read_costs(group, name) for name in ("cpu", "wall"))
             return found
 

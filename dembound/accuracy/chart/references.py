@@ -1,7 +1,7 @@
 """The reference of a chart: an exact solution, an extended run, a finer run of a bar, or the finest choice's run."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -19,8 +19,8 @@ from dembound.casefile.tables import ReferenceName
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.formulas.cause import SIDES as OF_SIDES
 from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.history import Motions
 from dembound.kinds import with_changes
-from dembound.motion.kind import Finding
 from dembound.table import Box
 
 SIDES = "boundary."
@@ -84,8 +84,8 @@ class _References:
             return self._default()
         made = {"exact": self._exact, "extended": self._extended, "finer": self._finer, "finest": self._finest}
         if (found := made[requested]()) is None:
-            reason = "finer is for bars; of disks take exact, extended or finest"
-            raise CaseError([f"--reference: {reason}"], self._case.name)
+            said = "--reference: finer is for bars; of disks take exact, extended or finest"
+            raise CaseError([said], self._case.name)
         return found
 
     def _default(self) -> Reference:
@@ -113,14 +113,12 @@ class _References:
 
     def _exact(self) -> Reference:
         """The exact solution."""
-        solution: Exact = exact_of(self._case)
-        return Reference(
-            name="exact",
-            sentence=solution.sentence,
-            motions=lambda choice, outcome: solution.motions(choice.case, outcome.motions),
-            until=solution.until,
-            findings=solution.findings,
-        )
+        found: Exact = exact_of(self._case)
+
+        def motions(choice: Choice, outcome: Run) -> Motions:
+            return found.motions(choice.case, outcome.motions)
+
+        return Reference("exact", found.sentence, motions, found.until, found.findings)
 
     def _extended(self, most: int = MOST) -> Reference:
         """The extended scene of the finest choice, with the case's own sides, of at most `most` particles.
@@ -134,11 +132,13 @@ class _References:
         plain = fine.case if fine else plain
         larger = extended(plain, most)
         if larger.case is plain:
-            reason = "no side has to be moved, the extended scene is that of the case"
-            raise CaseError([f"--reference: {reason}"], self._case.name)
+            said = "--reference: no side has to be moved, the extended scene is that of the case"
+            raise CaseError([said], self._case.name)
         outcome = self._done("extended scene", larger.case, larger.inside)
-        findings = _from_own_end(outcome.findings, larger.inside[0], self._judge.from_left_end)
-        outcome = replace(outcome, findings=findings)
+        places = {name: outcome.findings[name] for name in self._judge.from_left_end if name in outcome.findings}
+        begins = larger.inside[0]  # where the case's scene begins, from which its places are measured
+        own = {name: found._replace(value=found.value - begins) for name, found in places.items()}
+        outcome = replace(outcome, findings={**outcome.findings, **own})
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
         return self._of_run("extended", sentence, larger.case, outcome, fine)
@@ -160,9 +160,8 @@ class _References:
         if fine is None:
             return None
         outcome = self._done("finer reference", fine.case)
-        sentence = (
-            f"finite differences at Courant number 1 and a spacing of {fine.spacing:.4g} m, finer than all choices"
-        )
+        spacing = f"a spacing of {fine.spacing:.4g} m, finer than all choices"
+        sentence = f"finite differences at Courant number 1 and {spacing}"
         other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
         sentence += f", {label(self._case, other)}" if other else ""
         return self._of_run("finer", sentence, fine.case, outcome, fine)
@@ -191,7 +190,8 @@ class _References:
         intact = {monitor: own.before(findings.get(at, math.inf)) for monitor, own in run.motions.items()}
         causes = self._judge.of_reference(case, intact, run.time_step)
         causes = replace(causes, found=[cause for cause in causes.found if cause.counts(of)])
-        has_sides = name != "extended" and any(_is_left_out(case, side) for side in SIDE_NAMES)
+        sides = [case.side(side) for side in SIDE_NAMES]  # errors of those are unknown that absorb without a continuum
+        absorb = any(table.is_artificial and not table.waves and not table.is_outside for table in sides)
         breaks = [findings[at]] if at in findings and self._case.chart.until == "break" else []
         return Reference(
             name=name,
@@ -205,26 +205,19 @@ class _References:
             of=of,
             late=run.late,
             added=[cause.name for cause in causes.found if cause.how != "unknown"],
-            unknown=[*([OF_SIDES] if has_sides else []), *(cause.name for cause in causes.unknown)],
+            unknown=[*([OF_SIDES] if absorb and name != "extended" else []), *(cause.name for cause in causes.unknown)],
         )
-
-
-def _is_left_out(case: Case, side: str) -> bool:
-    """Whether errors of a side are unknown: it lets no waves in and has no continuum beyond."""
-    table = case.side(side)
-    return table.is_artificial and not table.waves and not table.is_outside
 
 
 def _sizes(causes: Causes) -> dict[str, dict[str, float]]:
     """By monitor and quantity, RMS of all causes together over RMS of the motion; empty without causes."""
     if causes.motions is None:
         return {}
-    budget = Budget(causes.motions, causes)
-    totals = {
-        name: {quantity: budget.total(name, quantity).value for quantity in budget.quantities(name)}
-        for name in causes.motions
-    }
-    return {name: {q: size for q, size in each.items() if math.isfinite(size)} for name, each in totals.items()}
+    budget, found = Budget(causes.motions, causes), {}
+    for name in causes.motions:
+        totals = {quantity: budget.total(name, quantity).value for quantity in budget.quantities(name)}
+        found[name] = {quantity: size for quantity, size in totals.items() if math.isfinite(size)}
+    return found
 
 
 def _finest(outcomes: Sequence[Run]) -> int:
@@ -236,13 +229,6 @@ def _finest(outcomes: Sequence[Run]) -> int:
     if not done:
         raise RunError("no choice could be run")
     return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
-
-
-def _from_own_end(findings: Mapping[str, Finding], begins: float, names: Sequence[str]) -> dict[str, Finding]:
-    """Findings of an extended scene, the named places measured from `begins` (m), where the case's scene begins."""
-    return {
-        name: found._replace(value=found.value - begins) if name in names else found for name, found in findings.items()
-    }
 
 
 def _is_same_run(outcome: Run, run: Run) -> bool:

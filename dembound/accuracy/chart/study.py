@@ -83,22 +83,18 @@ def alike(values: np.ndarray, ratio: float) -> list[float]:
 
 def front(points: Sequence[Point]) -> list[int]:
     """Indices of the points on the front, the most accurate first; of several equal points the first."""
-    kept = [k for k, point in enumerate(points) if not any(_dominates(other, point) for other in points)]
-    return sorted(kept, key=lambda k: points[k])
 
+    def is_dominated(point: Point) -> bool:
+        """Whether another one is cheaper or more accurate, and neither costlier nor less accurate."""
+        return any(other.error <= point.error and other.cost <= point.cost and other != point for other in points)
 
-def _dominates(other: Point, point: Point) -> bool:
-    """Whether `other` is cheaper or more accurate than `point`, and neither costlier nor less accurate."""
-    return other.error <= point.error and other.cost <= point.cost and other != point
+    return sorted((k for k, point in enumerate(points) if not is_dominated(point)), key=lambda k: points[k])
 
 
 def cheapest_within(points: Sequence[Point], level: float) -> int | None:
     """Number of the cheapest point with an error of at most `level`, which is on the front; None if there is none."""
-    return min(
-        (k for k, point in enumerate(points) if point.error <= level),
-        key=lambda k: (points[k].cost, points[k].error),
-        default=None,
-    )
+    within = [k for k, point in enumerate(points) if point.error <= level]
+    return min(within, key=lambda k: (points[k].cost, points[k].error), default=None)
 
 
 def from_table(case: Case) -> dict[str, Mapping[str, Any]]:

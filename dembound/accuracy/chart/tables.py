@@ -24,20 +24,8 @@ RESULTS = ("choices", "reference")
 """The groups with the results, which are written anew every time."""
 
 COLUMNS = (
-    *(
-        "choice",
-        "on_front",
-        "failure",
-        "monitor",
-        "component",
-        "rms",
-        "total",
-        "peak",
-        "monitor_apart_m",
-        "cost_s",
-        "cpu_min_s",
-    ),
-    *("cpu_max_s", "run_s", "work", "threads", "stepped", "steps", "time_step_s"),
+    *("choice", "on_front", "failure", "monitor", "component", "rms", "total", "peak", "monitor_apart_m", "cost_s"),
+    *("cpu_min_s", "cpu_max_s", "run_s", "work", "threads", "stepped", "steps", "time_step_s"),
 )
 """Columns of every table; then those of findings, and one for every key that a choice changes."""
 
@@ -48,18 +36,10 @@ def write_results(charted: Charted, path: Path) -> None:
         for name in RESULTS:
             if name in file:
                 del file[name]
-        file.attrs.update(
-            {
-                "name": charted.case.name,
-                "title": charted.case.title,
-                "case": charted.case.text,
-                "version": __version__,
-                "quantity": charted.quantity,
-                "work_unit": charted.work_unit,
-                "sentence": charted.sentence,
-                "left_out": "\n".join(charted.left_out),
-            }
-        )
+        case = charted.case
+        file.attrs.update({"name": case.name, "title": case.title, "case": case.text, "version": __version__})
+        file.attrs.update({"quantity": charted.quantity, "work_unit": charted.work_unit})
+        file.attrs.update({"sentence": charted.sentence, "left_out": "\n".join(charted.left_out)})
         _write_reference(file.create_group("reference"), charted)
         choices = file.create_group("choices", track_order=True)
         for number, line in enumerate(charted.lines):
@@ -74,25 +54,16 @@ def _write_reference(group: h5py.Group, charted: Charted) -> None:
     reference = charted.reference
     own = np.array(reference.own, dtype=int)
     group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choices": own})
-    group.attrs.update({"of": TITLES[reference.of], "covered": reference.covered})
-    for name, value in reference.findings.items():
-        group.attrs[name] = value
+    group.attrs.update({"of": TITLES[reference.of], "covered": reference.covered, **reference.findings})
     line = next(line for line in charted.lines if not line.outcome.failure)
     write_motions(group.create_group("gauges"), reference.motions(line.choice, line.outcome))
 
 
 def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:
     """Write a choice: its name and changes, the digest of its run, and the errors of its monitors."""
-    group.attrs.update(
-        {
-            "name": line.choice.name,
-            "digest": digest(line.choice.case),
-            "changes": json.dumps(line.choice.changes),
-            "on_front": number in charted.front,
-            "failure": line.outcome.failure,
-            "found": charted.found(line),
-        }
-    )
+    choice, on_front = line.choice, number in charted.front
+    group.attrs.update({"name": choice.name, "digest": digest(choice.case), "changes": json.dumps(choice.changes)})
+    group.attrs.update({"on_front": on_front, "failure": line.outcome.failure, "found": charted.found(line)})
     if not line.errors:
         return
     group.attrs.update({"error": line.point.error, "cost": line.point.cost})

@@ -100,28 +100,23 @@ class PulseInBar(Exact[BarCase]):
             return None
         place, at = triangle_spall(self.bar_length, self.speed, wave.rise, wave.fall, crest, strength)
         at += wave.start
-        return replace(
-            self,
-            until=at,
-            findings={SPALL_PLACE: place, SPALL_TIME: at},
-            sentence=f"exact (d'Alembert), up to the first spall at {1e3 * at:.4g} ms",
-        )
+        sentence = f"{self.sentence}, up to the first spall at {1e3 * at:.4g} ms"
+        return replace(self, until=at, findings={SPALL_PLACE: place, SPALL_TIME: at}, sentence=sentence)
 
     def motions(self, case: BarCase, recorded: Motions) -> dict[str, History]:
         """The motion and stress at the nodes of the monitors, at the same times."""
-        return {name: self._at(history) for name, history in recorded.items()}
-
-    def _at(self, history: History) -> History:
-        place = float(history.place[0])
-        length, speed, impedance = self.bar_length, self.speed, self.impedance
+        length, speed, found = self.bar_length, self.speed, {}
 
         def pressure(time: np.ndarray) -> np.ndarray:
             return np.where(time >= 0.0, self.pressure * self.wave.velocity(time), 0.0)
 
-        velocity = bar_velocity(place, history.time, pressure, length, speed, impedance, self.far_end)
-        displacement = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(history.time))])
-        stress = bar_stress(place, history.time, pressure, length, speed, self.far_end)
-        return History.of(history.place, history.time, along(displacement, 0), along(velocity, 0), stress)
+        for name, own in recorded.items():
+            place, time = float(own.place[0]), own.time
+            velocity = bar_velocity(place, time, pressure, length, speed, self.impedance, self.far_end)
+            displacement = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(time))])
+            stress = bar_stress(place, time, pressure, length, speed, self.far_end)
+            found[name] = History.of(own.place, time, along(displacement, 0), along(velocity, 0), stress)
+        return found
 
 
 CLEARLY = 2.0
@@ -153,14 +148,11 @@ class ExactMotion:
         octave = math.floor(math.log2(window.step))
         if octave not in self._found:
             self._found[octave] = self._splines(2.0**octave)
-        return {
-            name: History(
-                np.array([self.places[name], 0.0]),
-                window.time,
-                {quantity: spline(window.time) for quantity, spline in each.items()},
-            )
-            for name, each in self._found[octave].items()
-        }
+        found = {}
+        for name, each in self._found[octave].items():
+            values = {quantity: spline(window.time) for quantity, spline in each.items()}
+            found[name] = History(np.array([self.places[name], 0.0]), window.time, values)
+        return found
 
     def surely_counted(self, window: Window) -> dict[str, set[str]]:
         """By monitor the quantities that count for all choices.
@@ -171,9 +163,8 @@ class ExactMotion:
         for quantity in QUANTITIES:
             peaks = {name: float(np.abs(each.values[quantity]).max()) for name, each in motion.items()}
             for name, peak in peaks.items():
-                if peak > CLEARLY * LEAST[quantity] * max(peaks.values()) and (
-                    quantity != "stress" or self._inside(name)
-                ):
+                is_loud = peak > CLEARLY * LEAST[quantity] * max(peaks.values())
+                if is_loud and (quantity != "stress" or self._inside(name)):
                     found[name].add(quantity)
         return found
 
@@ -293,15 +284,17 @@ def _takes_all(motions: BarMotions) -> bool:
 
 def _none(cause: str, words: str, recorded: Motions) -> Cause:
     """A cause that adds nothing."""
-    nothing = {
-        name: {q: np.zeros_like(v, dtype=float) for q, v in own.values.items()} for name, own in recorded.items()
-    }
-    return Cause(cause, words, nothing)
+    zero = {name: {q: np.zeros(v.shape) for q, v in own.values.items()} for name, own in recorded.items()}
+    return Cause(cause, words, zero)
 
 
 def difference(cause: str, of: Motions, less: Motions, recorded: Motions) -> Cause:
-    """A cause that adds the difference of two motions to what is recorded."""
-    parts = {name: _errors(own, of[name], less[name]) for name, own in recorded.items()}
+    """A cause that adds the difference of two motions, along the bar, to what is recorded."""
+    parts: dict[str, dict[str, np.ndarray]] = {}
+    for name, own in recorded.items():
+        parts[name] = {quantity: np.zeros(values.shape) for quantity, values in own.values.items()}
+        for quantity, error in parts[name].items():
+            error[:, 0] = (of[name].values[quantity] - less[name].values[quantity])[:, 0]
     return Cause(cause, HOW, parts, factor=FACTOR)
 
 
@@ -339,12 +332,3 @@ def largest_motion(case: BarCase, last: float) -> dict[str, float]:
     loads = [abs(load.pressure) * case.wave[load.wave].peak() / impedance for load in case.load]
     velocity = math.fsum([*waves, *loads])
     return {"velocity": velocity, "displacement": velocity * last, "stress": velocity * impedance}
-
-
-def _errors(recorded: History, of: History, less: History) -> dict[str, np.ndarray]:
-    """Quantity -> error (k, c), along the bar."""
-    errors = {}
-    for quantity, values in recorded.values.items():
-        errors[quantity] = np.zeros_like(values, dtype=float)
-        errors[quantity][:, 0] = (of.values[quantity] - less.values[quantity])[:, 0]
-    return errors

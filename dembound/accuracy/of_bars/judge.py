@@ -14,7 +14,7 @@ from dembound.accuracy.judge import Extended, Judge, movable, must_not_exceed, s
 from dembound.accuracy.of_bars.causes import PulseInBar, causes_of_bar
 from dembound.accuracy.of_bars.options import bar_choices
 from dembound.accuracy.of_bars.search import advice_for_bar
-from dembound.accuracy.proposal import Advice, Watch
+from dembound.accuracy.proposal import Advice, Request, Watch
 from dembound.accuracy.runner import STEP_AND_END, Run
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step, front_of_bar, sources_of_bar
@@ -22,7 +22,7 @@ from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.model import Case
 from dembound.errors import CaseError
-from dembound.formulas.cause import Causes, Truth
+from dembound.formulas.cause import Causes
 from dembound.formulas.history import History, Motions
 from dembound.kinds.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.motion.endings import monitored
@@ -62,29 +62,6 @@ class Finer:
         }
 
 
-def finer(case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
-    """The reference for choices with these outcomes; case : of the bar, loads and ends.
-
-    Raises CaseError if the bar would have too many nodes, and for a bar with ranges, whose Courant numbers differ.
-    """
-    if case.bar.range:
-        raise CaseError(["reference: finer is not available for a bar with ranges"], case.name)
-    bars = [choice.case.bar for choice in choices]
-    cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
-    spacing = case.bar.length / cells
-    nodes = {_node(history, spacing, cells) for outcome in outcomes for history in outcome.motions.values()}
-    run = {key: value for key, value in case.run.given().items() if key not in STEP_AND_END}
-    changes: dict[str, Any] = {
-        "bar.spacing": spacing,
-        "method": {"type": "finite_difference"},
-        "run": {**run, "courant": 1.0},
-        "monitor": [{"name": _name(node), "position": min(node * spacing, case.bar.length)} for node in sorted(nodes)],
-        "output.history_interval": 0.0,
-        **{f"load.{load.name}.nodes": 1 for load in case.load},
-    }
-    return Finer(with_changes(case, changes), spacing, cells)
-
-
 def _cells(of_choices: set[int]) -> int:
     """Number of spacings in the length of the bar, given the numbers of the choices."""
     most, common = max(of_choices), math.lcm(*of_choices)
@@ -109,30 +86,14 @@ class BarJudge(Judge[BarCase, BarScene]):
     quantities: ClassVar[Sequence[Quantity]] = ("velocity", "displacement", "stress")
 
     def causes(
-        self,
-        case: BarCase,
-        recorded: Motions,
-        time_step: float,
-        work: float,
-        most: float,
-        watch: Watch,
-        longest: float | None = None,
+        self, case: BarCase, recorded: Motions, time_step: float, work: float, watch: Watch, longest: float | None
     ) -> Causes:
         """Errors of ends, nodes and steps, from the waves of the linear bar."""
         return causes_of_bar(case, recorded, time_step)
 
-    def advise(
-        self,
-        case: BarCase,
-        bounds: Sequence[float],
-        of: Truth,
-        kept: Sequence[str],
-        longest: float | None,
-        seeds: int,
-        watch: Watch,
-    ) -> Advice:
+    def advise(self, case: BarCase, asked: Request) -> Advice:
         """The cheapest nodes, steps and absorbing ends."""
-        return advice_for_bar(case, bounds, kept, longest, seeds, watch)
+        return advice_for_bar(case, asked)
 
     def extended(self, case: BarCase, most: int) -> Extended:
         """The bar with more spacings beyond ends that are neither loaded nor driven."""
@@ -156,16 +117,10 @@ class BarJudge(Judge[BarCase, BarScene]):
         if not any(cells.values()):
             return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
         shift = longer["left"]
-        monitors = tuple(
-            monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
-        )
-        larger = replace(
-            case,
-            bar=_lengthened(bar, longer, length),
-            monitor=monitors,
-            run=same_step(case.run, step),
-            name=f"{case.name}_extended",
-        )
+        moved = [(monitor, min(monitor.position + shift, length)) for monitor in case.monitor]
+        monitors = tuple(monitor.model_copy(update={"position": place}) for monitor, place in moved)
+        longer_bar, run = _lengthened(bar, longer, length), same_step(case.run, step)
+        larger = replace(case, bar=longer_bar, monitor=monitors, run=run, name=f"{case.name}_extended")
         return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))
 
     def exact(self, case: BarCase) -> PulseInBar | None:
@@ -173,8 +128,22 @@ class BarJudge(Judge[BarCase, BarScene]):
         return PulseInBar.of(case)
 
     def finer(self, case: BarCase, choices: Sequence[Choice[BarCase]], outcomes: Sequence[Run]) -> Finer:
-        """The bar by finite differences at Courant number 1."""
-        return finer(case, choices, outcomes)
+        """The bar by finite differences at Courant number 1.
+
+        Raises CaseError if the bar would have too many nodes, and for a bar with ranges, whose Courant numbers differ.
+        """
+        if case.bar.range:
+            raise CaseError(["reference: finer is not available for a bar with ranges"], case.name)
+        bars = [choice.case.bar for choice in choices]
+        cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
+        spacing = case.bar.length / cells
+        nodes = {_node(history, spacing, cells) for outcome in outcomes for history in outcome.motions.values()}
+        monitors = [{"name": _name(node), "position": min(node * spacing, case.bar.length)} for node in sorted(nodes)]
+        run = {key: value for key, value in case.run.given().items() if key not in STEP_AND_END}
+        changes: dict[str, Any] = {"bar.spacing": spacing, "method": {"type": "finite_difference"}}
+        changes |= {"run": run | {"courant": 1.0}, "monitor": monitors, "output.history_interval": 0.0}
+        changes |= {f"load.{load.name}.nodes": 1 for load in case.load}
+        return Finer(with_changes(case, changes), spacing, cells)
 
     def chart_choices(self, case: BarCase) -> Named:
         """All methods with several spacings."""

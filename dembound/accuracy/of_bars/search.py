@@ -25,7 +25,7 @@ from dembound.accuracy.of_bars.causes import (
     split,
 )
 from dembound.accuracy.of_bars.options import GIVEN_ENDS, BarOption, bar_options, may_break, other_options
-from dembound.accuracy.proposal import Advice, Proposal, Watch, ended_earlier
+from dembound.accuracy.proposal import Advice, Proposal, Request, ended_earlier
 from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene, build_bar
 from dembound.casefile.bar.model import BarCase
@@ -35,7 +35,6 @@ from dembound.formulas.bars.rods import Window
 from dembound.formulas.cause import Cause, Causes
 from dembound.formulas.history import History, Motions
 from dembound.methods.rod import Range
-from dembound.results.compare import at_times
 from dembound.results.histories import in_words
 
 MARGIN = 2.0
@@ -129,13 +128,10 @@ ALONG = "; its nodes and method remain, as it may break, and the error is that b
 """What is said of a bar that may break."""
 
 
-def advice_for_bar(
-    case: BarCase, bounds: Sequence[float], kept: Sequence[str], longest: float | None, seeds: int, watch: Watch
-) -> Advice:
+def advice_for_bar(case: BarCase, asked: Request) -> Advice:
     """The errors of a bar, and for every bound the cheapest choice that keeps it, or else the most accurate choice.
 
-    kept : keys that do not change. longest : CPU seconds that the steps of a choice may take; None: `COSTLIEST`.
-    seeds : more than 1 are refused. watch : told of what is known before all is.
+    asked : by default of steps as long as `COSTLIEST`; more than one seed is refused.
 
     Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
     keeps the values of `kept`; the errors of building a scene.
@@ -146,22 +142,23 @@ def advice_for_bar(
     if not own.moves:
         raise CaseError(["advise: nothing moves at the monitors"], case.name)
     given = Proposal(Choice("the case as it is", {}, case), own.choice.cost, own.budget)
-    if seeds > 1:
+    if asked.seeds > 1:
         raise no_seed(case)
-    watch.given(given)
-    motions = affordable(own, bar_options(case, kept), longest)
-    if bounds and not motions:
+    asked.watch.given(given)
+    kept = asked.kept
+    motions = affordable(own, bar_options(case, kept), asked.longest)
+    if asked.bounds and not motions:
         raise CaseError(["advise: no choice keeps the values of --keep, --set and --longest"], case.name)
     best, tried = {}, 0
-    for bound in bounds:
+    for bound in asked.bounds:
         motion, count = cheapest(motions, bound)
         tried += count
         words = motion.choice.words
         if may_break(case):
-            words += ALONG + (_otherwise(own, bound, kept, longest) if not motion.holds(bound) else "")
+            words += ALONG + (_otherwise(own, bound, kept, asked.longest) if not motion.holds(bound) else "")
         found = Proposal(Choice.of(case, motion.choice.case(case), words), motion.choice.cost, motion.budget)
         best[bound] = found if may_break(case) else ended_earlier(found, case, bound, motion.recorded, kept)
-        watch.best(bound, best[bound])
+        asked.watch.best(bound, best[bound])
     return Advice(given, best, tried)
 
 
@@ -235,13 +232,8 @@ class Motion:
         if self.choice.step <= (1.0 + EQUAL) * self.exact.step:
             return 0.0
         own, between = self._exact, self.exact.at(self._motions.window.finer(BETWEEN))
-        errors = {
-            name: {
-                q: at_times(own[name].time, own[name].values[q], each.time) - values
-                for q, values in each.values.items()
-            }
-            for name, each in between.items()
-        }
+        seen = {name: own[name].at(each.time).values for name, each in between.items()}
+        errors = {n: {q: seen[n][q] - values for q, values in each.values.items()} for n, each in between.items()}
         return Budget(between, Causes([Cause("", HOW, errors)])).worst().share.value
 
     @cached_property
@@ -317,13 +309,9 @@ class Motion:
     @cached_property
     def recorded(self) -> dict[str, History]:
         """The motion as a run records it, without the stress of end nodes, which is recorded half a spacing inside."""
-        ends = (0, self.choice.scene.count - 1)
-        at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
-        return {
-            name: replace(
-                own,
-                place=np.array([self.exact.places[name], 0.0]),
-                values={q: values for q, values in own.values.items() if q != "stress" or name not in at_ends},
-            )
-            for name, own in self._own.items()
-        }
+        found = {}
+        for name, own in self._own.items():
+            at_end = self._motions.nodes[name] in (0, self.choice.scene.count - 1)
+            values = {q: values for q, values in own.values.items() if q != "stress" or not at_end}
+            found[name] = replace(own, place=np.array([self.exact.places[name], 0.0]), values=values)
+        return found

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.accuracy.choice import Choice, changed
+from dembound.accuracy.of_disks.enlarged import reaches
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import SIDES
 from dembound.casefile.disks.model import DiskCase
@@ -45,14 +46,14 @@ class BoxOfDisks(NamedTuple):
     cost: float
 
 
-def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
-    """Changed keys, by table, of a case with disks in a box (m) only; unchanged packing keys are left out."""
+def changes_to_box(case: DiskCase, box: Box) -> dict[str, Any]:
+    """Changed keys of a case with disks in a box (m) only."""
     left, bottom, right, top = box
     size, origin = ([round(length, 10) for length in each] for each in ((right - left, top - bottom), (left, bottom)))
     outside = {f"boundary.{side}": continuum_beyond(case.side(side)) for side in _sides_beyond(case, box)}
-    packing = {"size": size, "origin": origin}
-    ground = {"size": list(case.size)} | ({"origin": list(case.box[:2])} if any(case.box[:2]) else {})
-    return {"ground": ground, "packing": packing, **outside}
+    kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
+    whole = {"ground.size": list(case.size)} | ({"ground.origin": list(case.box[:2])} if any(case.box[:2]) else {})
+    return {**whole, "packing": kept | {"size": size, "origin": origin}, **outside}
 
 
 def _sides_beyond(case: DiskCase, box: Box) -> Sequence[str]:
@@ -82,31 +83,19 @@ def may_be_boxed(case: DiskCase) -> bool:
     beyond = all(case.side(side).is_artificial for side in ("left", "right", "bottom"))
     at_top = case.side("top").is_free or case.side("top").is_outside
     from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
-    return (
-        plain
-        and _ends_level(case)
-        and beyond
-        and at_top
-        and from_below
-        and bool(signals_of(case))
-        and any(True for _ in extents(case))
-    )
+    has_sources = bool(signals_of(case)) and any(True for _ in extents(case))
+    return plain and _ends_level(case) and beyond and at_top and from_below and has_sources
 
 
 def _ends_level(case: DiskCase) -> bool:
     """Whether holes end within the sides, or as level floors at them, with no body-wide loads."""
-    left, _, right, _ = case.packing.box
-    reached = {side for hole in case.holes for side in ("left", "right") if _reaches(hole.box, side, left, right)}
+    box = case.packing.box
+    reached = {side for hole in case.holes for side in ("left", "right") if reaches(hole.box, side, box)}
     if not reached:
         return True
     wide = FLOOR * 2.0 * case.packing.radius
     is_level = all(side in case.floors and case.floors[side].width >= wide for side in reached)
     return is_level and not case.entering and not any(load.is_everywhere for load in case.load) and case.static is None
-
-
-def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
-    """Whether the rectangle round a hole reaches the left or the right side, at these x, m."""
-    return hole[0] <= left if side == "left" else hole[2] >= right
 
 
 def boxes(scene: DiskScene) -> Iterator[BoxOfDisks]:
@@ -216,10 +205,9 @@ def _continuum(
     case: DiskCase, ground: PackedMaterial, silent: Mapping[str, Boundary], bound: float
 ) -> Iterator[Choice[DiskCase]]:
     """Choices with a continuum beyond all artificial sides, or beyond those without waves, and round boxes of disks."""
-    coarse = CONTINUUM_SHARE * bound
-    accuracies: dict[str, dict[str, Any]] = {"": {}} | (
-        {"coarse ": {"outside.accuracy": coarse}} if coarse > case.outside.accuracy else {}
-    )
+    accuracies: dict[str, dict[str, Any]] = {"": {}}
+    if (coarse := CONTINUUM_SHARE * bound) > case.outside.accuracy:
+        accuracies["coarse "] = {"outside.accuracy": coarse}
     artificial = {side: table for side, table in case.boundary.items() if table.is_artificial}
     for name, accuracy in accuracies.items():
         for sides in (artificial, silent):
@@ -243,11 +231,7 @@ def _boxes(
     requested = changed(case, accuracy)
     small = [*rectangles(requested, ground)]
     for box in dict.fromkeys([*small, *(_with_monitors(case, each) for each in small)]):
-        tables = box_tables(case, box)
-        kept = {key: value for key, value in case.packing.given().items() if key != "bricks"}
-        whole = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
-        changes = {**whole, "packing": kept | tables.pop("packing"), **tables}
-        changes |= accuracy
+        changes = {**changes_to_box(case, box), **accuracy}
         yield from _if_valid(f"a box of {_size(box)} in a {name}continuum", case, changes)
 
 

@@ -6,19 +6,18 @@ Each choice for advice is built once, as long as the time lasts.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count
 from typing import Any
 
 from dembound.accuracy.choice import COARSER, OWN, Named, is_valid, label, valid
-from dembound.accuracy.of_disks.arrangements import box_tables, cheapest_box, continuum_beyond, may_be_boxed
+from dembound.accuracy.of_disks.arrangements import changes_to_box, cheapest_box, continuum_beyond, may_be_boxed
 from dembound.accuracy.of_disks.law import ElasticTwin
 from dembound.accuracy.of_disks.options import Built, DiskOption, Options
 from dembound.accuracy.runner import Runner
 from dembound.boundaries import Motion
-from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene, build
@@ -224,57 +223,35 @@ def _unmatched(scene: DiskScene, side: str) -> Iterator[Motion]:
 
 def _other_sides(case: DiskCase) -> Named:
     """Other types for all absorbing sides without waves, where allowed; types with factors β keep them."""
-    absorbing = _absorbing(case)
+    absorbing = {side: table for side, table in case.boundary.items() if table.absorbs}
     silent = {side: table for side, table in absorbing.items() if not table.waves}
-    tables: dict[str, dict[str, Any]] = {
-        "viscous": {},
-        "viscoelastic": {"distance": 0.5 * max(case.packing.extent)},
-        "free": {},
-    }
+    springs = {"distance": 0.5 * max(case.packing.extent)}
+    tables: dict[str, dict[str, Any]] = {"viscous": {}, "viscoelastic": springs, "free": {}}
     for name, extra in tables.items() if silent else ():
-        keeps = name in ("viscous", "viscoelastic")
-        changes: dict[str, Any] = {
-            f"boundary.{side}": {"type": name, **extra} | (_factors(table.given()) if keeps else {})
-            for side, table in silent.items()
-        }
+        changes: dict[str, Any] = {}
+        for side, table in silent.items():
+            factors = {key: value for key, value in table.given().items() if key.startswith("beta_")}
+            changes[f"boundary.{side}"] = {"type": name, **extra} | ({} if name == "free" else factors)
         if {table.type for table in silent.values()} != {name} and is_valid(case, changes):
             yield f"{_listed(silent)} {name}", changes
-    yield from _continuum(case, silent, absorbing)
-    yield from _box(case)
-
-
-def _absorbing(case: DiskCase) -> dict[str, Boundary]:
-    """The sides that absorb, with waves or without."""
-    return {side: table for side, table in case.boundary.items() if table.absorbs}
-
-
-def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
-    """A continuum beyond the first of several sets of sides that allows one; waves enter as in the case."""
-    for sides in choices:
+    for sides in (silent, absorbing):  # a continuum beyond the first that allows one; waves enter as in the case
         changes = {f"boundary.{side}": continuum_beyond(table) for side, table in sides.items()}
         if not all(table.is_outside for table in sides.values()) and is_valid(case, changes):
             yield f"{_listed(sides)} outside", changes
-            return
+            break
+    yield from _box(case)
 
 
 def _box(case: DiskCase) -> Named:
     """The smallest box of disks round holes and loads, if it saves much and all monitors may lie around it."""
     if not may_be_boxed(case) or (best := cheapest_box(build(case))) is None:
         return
-    tables = box_tables(case, best.box)
-    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"} | tables.pop("packing")
-    ground = {f"ground.{key}": value for key, value in tables.pop("ground").items()}
-    changes = {**ground, "packing": packing, **tables}
+    changes = changes_to_box(case, best.box)
     if is_valid(case, changes, build):
-        yield "box of {:g} m × {:g} m, outside".format(*packing["size"]), changes
+        yield "box of {:g} m × {:g} m, outside".format(*changes["packing"]["size"]), changes
 
 
 def _listed(names: Iterable[str]) -> str:
     """Names as in "left, right and bottom"."""
     *others, last = names
     return f"{', '.join(others)} and {last}" if others else last
-
-
-def _factors(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The factors β among the keys of a side."""
-    return {key: value for key, value in given.items() if key.startswith("beta_")}

@@ -224,10 +224,8 @@ def entry_notes(scene: DiskScene) -> list[str]:
     late = late_by(scene)
     if abs(late) < LEAST_LATE * scene.case.run.duration:
         return []
-    return [
-        f"waves enter {abs(late):.2g} s {'later' if late > 0.0 else 'earlier'} than through the plane of their side; "
-        "errors are without this shift"
-    ]
+    shift = f"{abs(late):.2g} s {'later' if late > 0.0 else 'earlier'}"
+    return [f"waves enter {shift} than through the plane of their side; errors are without this shift"]
 
 
 def quick_causes(scene: DiskScene) -> Causes:

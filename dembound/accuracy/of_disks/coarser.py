@@ -101,6 +101,8 @@ def coarser(
     columns, rows, cell = _cells(case.size, diameter)
     packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows), origin=case.box[:2])
     sides = _Sides(np.divide(packing.extent, case.size), packing.box)
+    places = {monitor.name: {"position": sides.at(scene.monitored[monitor.name])} for monitor in case.monitor}
+    lasting = case.run.model_dump(exclude=set(ENDING), exclude_unset=True)
     larger = replace(
         case,
         packing=packing,
@@ -109,11 +111,9 @@ def coarser(
         layer=_layers(case, scene.ground, sides),
         hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.holes),
         load=tuple(_load(load, scene, cell, sides) for load in case.load),
-        monitor=tuple(
-            monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor
-        ),
+        monitor=tuple(monitor.model_copy(update=places[monitor.name]) for monitor in case.monitor),
         static=_static(case, scene.ground.moduli),
-        run=_run(case),
+        run=type(case.run).model_validate(lasting | {"time_step": "auto", "checkpoint": 0.0}),
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
     )
@@ -172,12 +172,6 @@ class _Sides:
         return np.clip(place, self.box[:2], self.box[2:])
 
 
-def _run(case: DiskCase) -> Any:
-    """The ``[run]`` table: its own time step, to the same end, without files."""
-    lasting = case.run.model_dump(exclude=set(ENDING), exclude_unset=True)
-    return type(case.run).model_validate(lasting | {"time_step": "auto", "checkpoint": 0.0})
-
-
 def _layers(case: DiskCase, ground: PackedMaterial, sides: _Sides) -> tuple[Layer, ...]:
     """The layers, where sides have moved them, whose lattices have their wave speeds along y."""
     layers = case.layers_meeting([joint + sides.moved(np.array([0.0, joint]))[1] for joint in case.layer_planes])
@@ -207,12 +201,8 @@ def _material(material: Material, ground: PackedMaterial, along: int = 0) -> Mat
     contacts = moduli.emod / (moduli.emod + moduli.pb_emod)
     replaced = {*STIFFNESS_KEYS, *TARGET_KEYS, "match", "kratio", "pb_kratio", "locked_in"}
     given = material.model_dump(exclude_unset=True, exclude=replaced)
-    given |= {
-        "p_wave_speed": p,
-        "contact_share": contacts,
-        "kratio": ratio,
-        "pb_kratio": ratio if material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
-    }
+    of_bonds = ratio if material.fric > 0.0 else ratio * (1.0 - contacts)  # else bonds carry all shear
+    given |= {"p_wave_speed": p, "contact_share": contacts, "kratio": ratio, "pb_kratio": of_bonds}
     return Material.model_validate({key: value for key, value in given.items() if value is not None})
 
 

@@ -125,15 +125,13 @@ class Companions:
     def own(self) -> DiskCase:
         """The given case with larger disks, and monitors at the disks of all patches."""
         case = self.lattice.case
-        monitors = {monitor.name: monitor for monitor in case.monitor}
-        return replace(
-            case,
-            monitor=tuple(
-                monitors[name].model_copy(update={"name": _named(name, k), "position": tuple(place)})
-                for name, patch in self._patches.items()
-                for k, place in enumerate(patch.tolist())
-            ),
+        given = {monitor.name: monitor for monitor in case.monitor}
+        monitors = tuple(
+            given[name].model_copy(update={"name": _named(name, k), "position": tuple(place)})
+            for name, patch in self._patches.items()
+            for k, place in enumerate(patch.tolist())
         )
+        return replace(case, monitor=monitors)
 
     @cached_property
     def _needed(self) -> dict[str, int]:
@@ -167,9 +165,8 @@ class Companions:
         """The motion of the disks of all patches with far sides and a mirror plane at a side that stays."""
         if side not in self._mirrored:
             sides = {**self.own.boundary, side: Symmetry(type="symmetry")}
-            self._mirrored[side] = self._run(
-                self._with_far_sides(replace(self.own, boundary=sides)), f"a mirror plane at {side}"
-            )
+            case = self._with_far_sides(replace(self.own, boundary=sides))
+            self._mirrored[side] = self._run(case, f"a mirror plane at {side}")
         return self._mirrored[side]
 
     def with_row_at(self, side: str) -> Motions:
@@ -180,9 +177,8 @@ class Companions:
             copies[axis] += 1
             origin[axis] -= 0.0 if is_far(side) else own.packing.brick_size[axis]
             packing = own.packing.with_copies(*copies).model_copy(update={"origin": tuple(origin)})
-            self._behind[side] = self._run(
-                self._with_far_sides(replace(own, packing=packing)), f"one more row at {side}"
-            )
+            case = self._with_far_sides(replace(own, packing=packing))
+            self._behind[side] = self._run(case, f"one more row at {side}")
         return self._behind[side]
 
     def places_of(self, scene: DiskScene) -> dict[str, np.ndarray]:
@@ -200,13 +196,10 @@ class Companions:
         for name, patch in self._patches.items():
             weights = weights_at(patch, places[name])
             disks = [motions[_named(name, k)] for k in range(len(patch))]
-            found[name] = {
-                q: sum(
-                    (w * history.values[q][:, :2] for w, history in zip(weights, disks, strict=True)),
-                    np.zeros((len(disks[0].time), 2)),
-                )
-                for q in QUANTITIES
-            }
+            found[name] = {q: np.zeros((len(disks[0].time), 2)) for q in QUANTITIES}
+            for weight, history in zip(weights, disks, strict=True):
+                for q, motion in found[name].items():
+                    motion += weight * history.values[q][:, :2]
         return found
 
     def of_sides(
@@ -278,9 +271,8 @@ def farther(packing: Packing, needed: Mapping[str, int], wider: float) -> dict[s
 
     needed : by side, the most that it moves, see `needed_by`.
     """
-    return {
-        side: min(count, math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9)) for side, count in needed.items()
-    }
+    bricks = {side: math.ceil(wider * packing.copies[normal_axis(side)] - 1e-9) for side in needed}
+    return {side: min(count, bricks[side]) for side, count in needed.items()}
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,7 +39,6 @@ from dembound.disks.surroundings.media import medium_of
 from dembound.disks.surroundings.settings import expected_tops, settings_of
 from dembound.errors import DemboundError
 from dembound.motion.kind import Plan
-from dembound.packings import Packing
 from dembound.packings.tiling import count_disks
 
 LEAST, NARROW = 4, 10
@@ -121,7 +120,7 @@ class Steps:
                 sides[side] = Periodic(type="periodic")
             elif not table.is_artificial and not table.is_free:
                 sides[side] = table.at_rest()
-        return self._limit((*copies, *is_narrow, *map(repr, sides.values())), copies, sides)
+        return self._limit((*copies, *is_narrow, *map(repr, sides.values())), copies, sides, None)
 
     def _in_continuum(self, case: DiskCase, element: tuple[float, float]) -> float:
         """Stability limit (s) of the given ground in a continuum with as many elements for each brick."""
@@ -133,15 +132,8 @@ class Steps:
         ]
         sizes = zip(along, self.case.packing.brick_size, strict=True)
         side = max(each.bricks * own / each.elements for each, own in sizes)
-        table = OutsideTable(
-            order=outside.order,
-            element=side * (1.0 + 1e-9),
-            margin=1,
-            layers=LAYERS,
-            shift=outside.shift,
-            delay=outside.delay,
-            damping=outside.damping,
-        )
+        same = {key: getattr(outside, key) for key in ("order", "shift", "delay", "damping")}
+        table = OutsideTable(element=side * (1.0 + 1e-9), margin=1, layers=LAYERS, **same)
         sides: dict[str, Boundary] = {
             each: Periodic(type="periodic") if case.periodic[normal_axis(each)] else Outside(type="outside")
             for each in SIDES
@@ -150,33 +142,17 @@ class Steps:
         return self._limit(key, [each.bricks for each in along], sides, table)
 
     def _limit(
-        self,
-        key: tuple[object, ...],
-        copies: list[int],
-        sides: Mapping[str, Boundary],
-        outside: OutsideTable | None = None,
+        self, key: tuple[object, ...], copies: list[int], sides: Mapping[str, Boundary], outside: OutsideTable | None
     ) -> float:
         """Stability limit (s) of `copies` bricks of the given ground, found once; infinite if they make no scene.
 
         Of layers that of the stiffest.
         """
         if key not in self.limits:
-            piece = replace(
-                self.case,
-                packing=self._packing(*copies),
-                boundary=sides,
-                outside=outside or self.case.outside,
-                ground=Ground(),
-                group=(),
-                hole=(),
-                wall=(),
-                joint=(),
-                load=(),
-                monitor=(),
-                wave={},
-                static=None,
-                incident=None,
-            )
+            packing = self.case.packing.with_copies(*copies).model_copy(update={"origin": (0.0, 0.0)})
+            none: dict[str, Any] = dict.fromkeys(("group", "hole", "wall", "joint", "load", "monitor"), ())
+            piece = replace(self.case, packing=packing, boundary=sides, outside=outside or self.case.outside)
+            piece = replace(piece, ground=Ground(), wave={}, static=None, incident=None, **none)
             heights = [top - self.case.packing.radius for top in (self.case.box[3], *self.case.layer_planes)]
             layers = [self.case.uniform_at(height).layer for height in heights]
             try:
@@ -184,10 +160,6 @@ class Steps:
             except DemboundError:
                 self.limits[key] = math.inf
         return self.limits[key]
-
-    def _packing(self, across: int, up: int) -> Packing:
-        """The given packing with other numbers of bricks, at the origin."""
-        return self.case.packing.with_copies(across, up).model_copy(update={"origin": (0.0, 0.0)})
 
 
 SAMPLES = 64
@@ -271,9 +243,8 @@ class Counted:
         grid = GridSizes.of(mesh)
         if case.column_sides and "bottom" in sides:  # one element wide below the column
             more, order = settings.margin + settings.layers, settings.order
-            grid = GridSizes(
-                grid.nodes + order * (order * more + 1), grid.elements + more, grid.absorbing + settings.layers, order
-            )
+            nodes, absorbing = grid.nodes + order * (order * more + 1), grid.absorbing + settings.layers
+            grid = GridSizes(nodes, grid.elements + more, absorbing, order)
         element = settings.sides(packing.extent[0], packing.extent[1])
         return grid, element
 

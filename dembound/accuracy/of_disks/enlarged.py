@@ -14,7 +14,7 @@ from dembound.accuracy.judge import Extended, movable, must_not_exceed, same_ste
 from dembound.accuracy.of_disks.coarser import Coarser, coarser, largest_diameter
 from dembound.boundaries.edge import SIDES, is_far, normal_axis, plane_of
 from dembound.casefile.disks.load import Load, Monitor
-from dembound.casefile.disks.model import DiskCase, DiskRun
+from dembound.casefile.disks.model import DiskCase
 from dembound.continuum import sizing
 from dembound.disks.material.packing_waves import front_of, slowest_speed
 from dembound.disks.scene import DiskScene, build
@@ -88,15 +88,9 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> DiskCase:
         monitor=tuple(_at_own_disk(monitor, scene, packing) for monitor in case.monitor),
         hole=(*case.holes, *_floors_beyond(case, packing.box)),
         ground=case.ground.level(),
-        run=_run_of(scene),
+        run=case.run if case.outside_sides else same_step(case.run, choose_step(scene)[0]),  # else with its own limit
         name=f"{case.name}_extended",
     )
-
-
-def _run_of(scene: DiskScene) -> DiskRun:
-    """The ``[run]`` table of an enlarged scene; its step beside a continuum has its own limit."""
-    case = scene.case
-    return case.run if case.outside_sides else same_step(case.run, choose_step(scene)[0])
 
 
 def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
@@ -163,18 +157,13 @@ def _floors_beyond(case: DiskCase, larger: Box) -> list[Hole]:
     first = case.floors_of([hole for hole in case.holes if hole.stage == "before"])
     each = [("before", side, floor) for side, floor in first.items()]
     each += [("after", side, floor) for side, floor in case.floors.items() if first.get(side) != floor]
-    return [
-        Rectangle.model_validate(
-            {
-                "type": "rectangle",
-                "name": f"{stage}_{side}",
-                "stage": stage,
-                "corners": (ends[side][0], floor.height, ends[side][1], larger[3]),
-            }
-        )
-        for stage, side, floor in each
-        if _goes_on_level(case, side) and ends[side][0] < ends[side][1]
-    ]
+    found: list[Hole] = []
+    for stage, side, floor in each:
+        begin, end = ends[side]
+        if _goes_on_level(case, side) and begin < end:
+            table = {"type": "rectangle", "name": f"{stage}_{side}", "stage": stage}
+            found.append(Rectangle.model_validate(table | {"corners": (begin, floor.height, end, larger[3])}))
+    return found
 
 
 def _goes_on_level(case: DiskCase, side: str) -> bool:
@@ -185,23 +174,23 @@ def _goes_on_level(case: DiskCase, side: str) -> bool:
 
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
     """Raise CaseError for holes that reach beyond a side that moves, but for level ground that goes on there."""
+    said = "beyond which the case does not say how it goes on, so that the scene cannot be extended there"
     problems = [
-        f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
-        "scene cannot be extended there"
+        f"hole.{hole.name}: reaches the {side} side, {said}"
         for hole in case.holes
         for side in SIDES
         if bricks.get(side, 0)
-        and _reaches(hole.box, side, plane_of(side, case.packing.box))
+        and reaches(hole.box, side, case.packing.box)
         and not (_goes_on_level(case, side) and (side in case.floors or case.is_above_surface(hole)))
     ]
     if problems:
         raise CaseError(problems, case.name)
 
 
-def _reaches(box: Box, side: str, plane: float) -> bool:
-    """Whether a rectangle reaches a plane (m along its normal), or beyond."""
-    outermost = plane_of(side, box)
-    return outermost >= plane if is_far(side) else outermost <= plane
+def reaches(inner: Box, side: str, outer: Box) -> bool:
+    """Whether a rectangle reaches a side of another one, or beyond."""
+    beyond = plane_of(side, inner) - plane_of(side, outer)
+    return beyond >= 0.0 if is_far(side) else beyond <= 0.0
 
 
 RATIOS = (3.0, 4.0, 5.0, 6.0)
@@ -287,24 +276,13 @@ def _with_far_sides(given: Coarser, ratio: float, most: float) -> Pair:
     smaller = build(given.case)
     bricks = bricks_needed(smaller, movable(smaller.case))
     allowed = most / (smaller.case.run.duration / choose_step(smaller)[0]) - smaller.disk_count
+    copies = smaller.case.packing.copies
     for times in (math.inf, *SMALLER):
-        limited = {side: int(min(count, _limit(smaller.case, side, times))) for side, count in bricks.items()}
-        if _count(smaller.case, limited) <= allowed:
+        longer = {side: (times - 1.0) * copies[normal_axis(side)] for side in bricks}
+        limited = {side: count if count <= longer[side] else math.ceil(longer[side]) for side, count in bricks.items()}
+        if math.prod(_with_more(smaller.case, limited).copies) <= allowed:  # a lattice of one disk in a brick
             break
     return Pair(given, ratio, smaller, build(enlarged(smaller, limited)), limited, limited == bricks)
-
-
-def _limit(case: DiskCase, side: str, times: float) -> float:
-    """Most bricks beyond a side with which the scene becomes `times` times as long."""
-    axis = normal_axis(side)
-    return math.inf if math.isinf(times) else math.ceil((times - 1.0) * case.packing.copies[axis])
-
-
-def _count(case: DiskCase, bricks: Mapping[str, float]) -> float:
-    """Number of disks of a lattice with more of them beyond its sides."""
-    across, up = case.packing.copies
-    across += int(bricks.get("left", 0) + bricks.get("right", 0))
-    return across * (up + bricks.get("bottom", 0) + bricks.get("top", 0))
 
 
 def _work(scene: DiskScene) -> float:

@@ -130,10 +130,8 @@ def _as_deep(table: Boundary, given: Boundary) -> Boundary:
 
 def with_whole_cells(case: DiskCase) -> DiskCase:
     """A case with whole cells at its sides, except where waves enter, whose reflection is known by formula."""
-    boundary = {
-        side: table.with_half_cells(False) if _may_be_whole(table) else table for side, table in case.boundary.items()
-    }
-    return replace(case, boundary=boundary)
+    whole = {side: table.with_half_cells(False) for side, table in case.boundary.items() if _may_be_whole(table)}
+    return replace(case, boundary={**case.boundary, **whole})
 
 
 def _may_be_whole(table: Boundary) -> bool:

@@ -29,7 +29,7 @@ from dembound.accuracy.of_disks.exact.references import ExactContinuum, ExactLay
 from dembound.accuracy.of_disks.law import elastic_twin
 from dembound.accuracy.of_disks.measured import cause_of_packing
 from dembound.accuracy.of_disks.search import Search, before_breaks
-from dembound.accuracy.proposal import Advice, Proposal, Watch
+from dembound.accuracy.proposal import Advice, Proposal, Request, Watch
 from dembound.accuracy.reference import Exact
 from dembound.accuracy.runner import BUDGET, SHORT, Runner
 from dembound.casefile.disks.model import DiskCase
@@ -82,8 +82,8 @@ def _require_linear(case: DiskCase) -> None:
         raise CaseError(["wall: errors are known only where no disks touch walls"], case.name)
     for key in ("joint", "group"):
         if getattr(case, key):
-            said = f"{key}: errors of motion beside {key}s are not predicted; compare runs with smaller disks"
-            raise CaseError([said], case.name)
+            said = f"errors of motion beside {key}s are not predicted; compare runs with smaller disks"
+            raise CaseError([f"{key}: {said}"], case.name)
 
 
 def require_one_ground(case: DiskCase) -> None:
@@ -129,18 +129,11 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
     first_break = BREAK_TIME
 
     def causes(
-        self,
-        case: DiskCase,
-        recorded: Motions,
-        time_step: float,
-        work: float,
-        most: float,
-        watch: Watch,
-        longest: float | None = None,
+        self, case: DiskCase, recorded: Motions, time_step: float, work: float, watch: Watch, longest: float | None
     ) -> Causes:
         """Errors of sides, from companions; of dispersion, steps, continuum and walls, by formulas."""
         self.require_known(case)
-        return causes_of_run(case, recorded, time_step, work, most, watch, longest)
+        return causes_of_run(case, recorded, time_step, work, max(SHORT, BUDGET * work), watch, longest)
 
     def require_known(self, case: DiskCase) -> None:
         """Raise CaseError for cases of which errors are not predicted: by their law, their ground, or what is in it."""
@@ -170,16 +163,7 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         else:
             yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
-    def advise(
-        self,
-        case: DiskCase,
-        bounds: Sequence[float],
-        of: Truth,
-        kept: Sequence[str],
-        longest: float | None,
-        seeds: int,
-        watch: Watch,
-    ) -> Advice:
+    def advise(self, case: DiskCase, asked: Request) -> Advice:
         """The cheapest disks, sides and boxes in a continuum.
 
         With the truth "disks" the disks do not change; choices do not depend on the scatter between packings. A case
@@ -190,7 +174,8 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """
         self.require_known(case)
         _require_known(case)
-        kept = [*kept, "packing.radius"] if of == "disks" else kept
+        of, longest, bounds, watch = asked.of, asked.longest, asked.bounds, asked.watch
+        kept = [*asked.kept, "packing.radius"] if of == "disks" else asked.kept
         watch.begins("the packing, and the time step")
         planned: Plan[DiskScene] = plan(case)
         most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
@@ -208,8 +193,8 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
             raise CaseError(["advise: nothing moves at the monitors"], case.name)
         given = _given(companions, of, own_cost, watch)
         shown = given
-        if seeds > 1:
-            shown = given.with_causes(cause_of_packing(case, given.budget.motions, seeds, watch.run))
+        if asked.seeds > 1:
+            shown = given.with_causes(cause_of_packing(case, given.budget.motions, asked.seeds, watch.run))
         watch.given(shown)
         if len(bounds) == 1 and given.cost < LONGEST and given.holds(bounds[0]):
             watch.best(bounds[0], given)
@@ -218,10 +203,10 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         searches = [Search(companions, candidates, of, kept, watch)]
         searches[0].know(given.budget)
         if bounds and (twin := elastic_twin(case, planned, most, kept, runner, reflections)) is not None:
-            own = Companions(twin.case, twin.planned.scene, twin.planned.time_step, most, runner, reflections)
-            candidates = Candidates(
-                twin.planned, kept, planned_cost(twin.planned).seconds, runner, twin, longest, len(bounds)
-            )
+            elastic = twin.planned
+            own = Companions(twin.case, elastic.scene, elastic.time_step, most, runner, reflections)
+            cost = planned_cost(elastic).seconds
+            candidates = Candidates(elastic, kept, cost, runner, twin, longest, len(bounds))
             searches.insert(0, Search(own, candidates, of, kept, watch))
         best = {}
         for number, bound in enumerate(sorted(bounds, reverse=True)):
@@ -259,9 +244,8 @@ class DiskJudge(Judge[DiskCase, DiskScene]):
         """A warning that packings differ at random, if bricks differ and some are random."""
         packings = [case.packing for case in cases]
         bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
-        if len(bricks) < 2 or all(packing.is_lattice for packing in packings):
-            return ()
-        return (REALISATIONS,)
+        are_alike = len(bricks) < 2 or all(packing.is_lattice for packing in packings)
+        return () if are_alike else (REALISATIONS,)
 
     def of_reference(self, case: DiskCase, motions: Motions, time_step: float) -> Causes:
         """All causes known by formula: dispersion, steps, walls, disks near loads, sides that waves enter through."""

@@ -187,6 +187,5 @@ def _factor(
         step = choose_step(built)[0]
         if built.disk_count * case.run.duration / step <= most:
             break
-    return runner.run(at_step(quiet, step), "load factor of the elastic law").finding(
-        LOAD_FACTOR
-    ), built.ground.brick.mean_diameter
+    found = runner.run(at_step(quiet, step), "load factor of the elastic law").finding(LOAD_FACTOR)
+    return found, built.ground.brick.mean_diameter

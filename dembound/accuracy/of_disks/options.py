@@ -186,11 +186,10 @@ class Options:
     def _copies(self, case: DiskCase, wider: float) -> tuple[int, int]:
         """Numbers of bricks along x and y with sides moved outwards by `wider` of the length."""
         copies, brick = list(case.packing.copies), case.packing.brick_size
-        for side, needed in self._needed.items():
-            if side in case.boundary and case.boundary[side].may_move:
-                axis = normal_axis(side)
-                most = math.ceil(needed / brick[axis] - ROUNDING)
-                copies[axis] += farther(case.packing, {side: most}, wider)[side]
+        moving = [side for side in self._needed if side in case.boundary and case.boundary[side].may_move]
+        most = {side: math.ceil(self._needed[side] / brick[normal_axis(side)] - ROUNDING) for side in moving}
+        for side, count in farther(case.packing, most, wider).items():
+            copies[normal_axis(side)] += count
         return copies[0], copies[1]
 
     @cached_property
@@ -207,10 +206,9 @@ class Options:
         """The case of a scene with sides farther away, up to where nothing returns; CaseError if that is invalid."""
         own = scene.case
         case = enlarged(scene, farther(own.packing, needed_by(scene), wider))
-        extent, origin = (
-            tuple(round(length, 10) for length in lengths) for lengths in (case.packing.extent, case.packing.origin)
-        )
-        packing = case.packing.model_copy(update={"size": extent, "origin": origin, "bricks": None})
+        places = {"size": case.packing.extent, "origin": case.packing.origin}
+        rounded = {key: tuple(round(length, 10) for length in lengths) for key, lengths in places.items()}
+        packing = case.packing.model_copy(update={**rounded, "bricks": None})
         return checked(replace(case, packing=packing, run=own.run, name=own.name))
 
 

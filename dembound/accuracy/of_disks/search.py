@@ -18,13 +18,7 @@ import numpy as np
 from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice, digest
 from dembound.accuracy.of_disks.candidates import CUT, Candidates, option_of
-from dembound.accuracy.of_disks.causes import (
-    PLACES,
-    causes_of_choice,
-    ground_causes,
-    rest_causes,
-    sides_cause,
-)
+from dembound.accuracy.of_disks.causes import PLACES, causes_of_choice, ground_causes, rest_causes, sides_cause
 from dembound.accuracy.of_disks.companions import Companions
 from dembound.accuracy.of_disks.enlarged import sides_of_pair
 from dembound.accuracy.of_disks.law import ElasticTwin
@@ -126,9 +120,8 @@ class Search:
         """
         sides = Causes([cause for cause in given.causes.found if cause.name == SIDES])
         if sides.found:
-            self.of_sides[_sides(self.candidates.options.own)] = (
-                Budget(given.motions, sides, self.of).worst().share.upper
-            )
+            upper = Budget(given.motions, sides, self.of).worst().share.upper
+            self.of_sides[_sides(self.candidates.options.own)] = upper
         disks = Causes([cause for cause in given.causes.found if cause.of_disks and cause.name != PLACES])
         if disks.found and not disks.unknown:
             self.candidates.of_given_disks = Budget(given.motions, disks, self.of).worst().share.upper
@@ -198,9 +191,8 @@ class Search:
             if not found and (built := self.candidates.built(item)) is not None:
                 found += self._with_error(built, None)
         if not found:
-            raise CaseError(
-                ["advise: no choice keeps the values of --keep, --set and --longest"], self.companions.case.name
-            )
+            said = "advise: no choice keeps the values of --keep, --set and --longest"
+            raise CaseError([said], self.companions.case.name)
         return min(found, key=lambda each: each.upper)
 
     def _alone(self, item: DiskOption | Built) -> float:
@@ -233,9 +225,8 @@ class Search:
         scene = built.planned.scene
         self.candidates.spent += self.candidates.per_error
         with suppress(DemboundError):
-            self._note_sides(
-                option, [sides_cause(self.companions, scene, built.planned.time_step, option.wider)], scene
-            )
+            cause = sides_cause(self.companions, scene, built.planned.time_step, option.wider)
+            self._note_sides(option, [cause], scene)
 
     def _note_sides(self, option: DiskOption, causes: Sequence[Cause], scene: DiskScene) -> None:
         """Store the error of the sides of a choice from its causes."""

@@ -25,12 +25,7 @@ def joined(first: Link, middle: np.ndarray, second: Link) -> Link:
     """Two links as one, with the block between them, of the matrix middle (f, b, b), eliminated."""
     answer = solve(middle + first.d + second.a, np.concatenate([first.c, second.b], axis=2))
     by_left, by_right = np.split(answer, 2, axis=2)
-    return Link(
-        first.a - first.b @ by_left,
-        -first.b @ by_right,
-        -second.c @ by_left,
-        second.d - second.c @ by_right,
-    )
+    return Link(first.a - first.b @ by_left, -first.b @ by_right, -second.c @ by_left, second.d - second.c @ by_right)
 
 
 class Row:
@@ -194,9 +189,8 @@ class Chain:
 
     def mobility(self, side: str, clock: Frequencies) -> np.ndarray:
         """Velocity (f,) m/s of a node under 1 N in a bar that continues on both sides like the layer at an end."""
-        block = (
-            self.first // self.wide // 2 if side == "left" else (self.first + self._bar + self.count) // self.wide // 2
-        )
+        nodes = self.first if side == "left" else self.first + self._bar + self.count
+        block = nodes // self.wide // 2
         matrix, across = self.matrices(block, clock)
         link = _row(matrix, across).links(len(self.mass))
         push = np.zeros((len(clock.s), self.wide, 1), dtype=complex)
@@ -206,10 +200,8 @@ class Chain:
     @property
     def kinds(self) -> np.ndarray:
         """(blocks,) numbers, equal for neighbouring blocks with equal nodes and bonds."""
-        blocks = len(self.mass)
-        rows = np.concatenate(
-            [each.reshape(blocks, -1) for each in (self.mass, self.damping, self.ground, self.bond, self.decay)], axis=1
-        )
+        each = self.mass, self.damping, self.ground, self.bond, self.decay
+        rows = np.concatenate([values.reshape(len(self.mass), -1) for values in each], axis=1)
         before = np.vstack([np.full((1, rows.shape[1]), -1.0), rows[:-1]])
         same = np.isclose(rows, before, rtol=EQUAL, atol=0.0).all(axis=1)  # as the one before
         new = ~same | ~np.concatenate([[True], same[:-1]])  # the one before is another than its own one before

@@ -81,11 +81,9 @@ def causes_of_continuum(scene: DiskScene, places: Mapping[str, np.ndarray]) -> I
     if scene.outside is None:
         return
     if (sizes := expected_errors(scene, places)) is None:
-        reason = (
-            "its layers stretch both axes, as its ground is strongly anisotropic, and return a part of motion"
-            if scene.outside.body.is_stretched_along
-            else "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
-        )
+        reason = "its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+        if scene.outside.body.is_stretched_along:
+            reason = "its layers stretch both axes, as its ground is strongly anisotropic, and return a part of motion"
         yield Cause.unknown(CONTINUUM, reason)
         return
     parts = {name: dict(zip(MOTIONS, each, strict=True)) for name, each in sizes.items()}
@@ -204,10 +202,7 @@ def _parts(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal], l
     steep = (math.log(reflection) / math.log(STEEPEST)) ** 2
     layers = LAYERS * sizing.layer_error(settings.order, settings.layers) * steep * lasting
     alike = KEPT * reflection
-    if scene.case.load:
-        alike = math.hypot(alike, layers)
-    else:
-        alike *= 1.0 - lasting**2
+    alike = math.hypot(alike, layers) if scene.case.load else alike * (1.0 - lasting**2)
     return _Parts(RETURNED * elements, TIES * lattice_errors(scene, signals, lowest)[0], alike)
 
 

@@ -65,13 +65,11 @@ class Way:
         return float(np.min([speed for *_, speed in self.parts]))
 
 
-def _both_ways(
-    along: np.ndarray,
-    path: float,
-    axis: int,
-    layers: Sequence[tuple[PackedMaterial, float]],
-    directions: Sequence[Direction],
-) -> list[Way]:
+Layers = Sequence[tuple[PackedMaterial, float]]
+"""Grounds, each with its share of a path."""
+
+
+def _both_ways(along: np.ndarray, path: float, axis: int, layers: Layers, directions: Sequence[Direction]) -> list[Way]:
     """The paths of P and S waves along a unit vector, with speeds along an axis, and shares of the path by layer."""
     across = np.array([-along[1], along[0]])
     p, s = ([(ground, share * path, ground.wave_speeds(axis)[kind]) for ground, share in layers] for kind in (0, 1))
@@ -95,10 +93,7 @@ class Dispersion:
             {name: self._delayed(own, step) for name, own in motions.items()} for step in (self.time_step, 0.0)
         )
         yield Cause(GRID, words, grid, of_disks=True, factor=USUAL)
-        steps = {
-            name: {quantity: each - grid[name][quantity] for quantity, each in errors.items()}
-            for name, errors in whole.items()
-        }
+        steps = {n: {q: each - grid[n][q] for q, each in errors.items()} for n, errors in whole.items()}
         yield Cause(STEP, words, steps, factor=USUAL)
 
     def _delayed(self, own: History, step: float) -> dict[str, np.ndarray]:

@@ -122,14 +122,14 @@ class HeldSides:
         held = motion == "p" if table.is_mirror else axis_of_motion(side, motion) in self._prescribed(side)
         return -1.0 if held else 1.0
 
-    def _of_plane_waves(self, own: History, side: str) -> dict[str, np.ndarray | float]:
+    def _of_plane_waves(self, own: History, side: str) -> dict[str, np.ndarray]:
         """Error of plane waves between a side and the opposite one by the depth of the side."""
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
         for driven in self._driven(side):
             for motion, entry in self._entries[driven].items():
                 if motion in self._depths[side]:
                     self._add_plane_wave(errors, own, side, driven, motion, entry)
-        return dict(errors)
+        return errors
 
     def _add_plane_wave(
         self, errors: dict[str, np.ndarray], own: History, side: str, driven: str, motion: Motion, entry: Entry
@@ -235,13 +235,10 @@ def reflected_motion(own: History, column: int, share: Reflected) -> dict[str, n
     acceleration = np.gradient(velocity, own.time)
     size = float(np.linalg.norm(acceleration))
     lag = -share.out_of_phase * float(np.linalg.norm(velocity)) / size if size > 0.0 else 0.0
-    in_phase = (
-        share.dashpots / (1.0 - share.dashpots) if share.dashpots < 1.0 else 0.0
-    )  # without dashpots none comes in
-    return {
-        "velocity": in_phase * velocity + lag * acceleration,
-        "displacement": in_phase * displacement + lag * velocity,
-    }
+    # without dashpots none comes in
+    in_phase = share.dashpots / (1.0 - share.dashpots) if share.dashpots < 1.0 else 0.0
+    both = in_phase * velocity + lag * acceleration, in_phase * displacement + lag * velocity
+    return dict(zip(MOTIONS, both, strict=True))
 
 
 def errors_on_rock(

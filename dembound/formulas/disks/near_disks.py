@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from dembound.boundaries import normal_axis
+from dembound.boundaries import normal_axis, plane_of
 from dembound.casefile.disks import DiskCase
 from dembound.continuum.sizing import mean_frequency
 from dembound.disks.material.packed_material import PackedMaterial
@@ -214,10 +214,9 @@ def errors_near_loads(scene: DiskScene, own: History) -> dict[str, float]:
 
 def _places(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
     """The middle (2,) m of each localised force with a wave, and half the longer side of its region, m."""
-    loads = [load for load in scene.case.load if load.wave is not None and load.pressure is None]
     found = []
-    for load in loads:
-        if not load.is_everywhere:
+    for load in scene.case.load:
+        if load.wave is not None and load.pressure is None and not load.is_everywhere:
             x0, y0, x1, y1 = load.region or (0.0, 0.0, 0.0, 0.0)
             found.append((middle_of_forces(load, scene)[0], 0.5 * max(x1 - x0, y1 - y0)))
     return found
@@ -257,17 +256,15 @@ def causes_at_edges(scene: DiskScene, motions: Motions) -> Iterator[Cause]:
     case = scene.case
     packing, box = case.packing, case.packing.box
     reach = 2.0 * scene.ground.brick.mean_diameter
-    edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
+    uneven = [side for side in case.boundary if not (packing.is_lattice and side in packing.regular_sides)]
+    planes = {side: plane_of(side, box) for side in uneven if case.boundary[side].factors}
     at = [
         name
         for name, own in motions.items()
-        for side, table in case.boundary.items()
-        if not (packing.is_lattice and side in packing.regular_sides)
-        and table.factors
-        and abs(own.place[normal_axis(side)] - edges[side]) < reach
+        if any(abs(own.place[normal_axis(side)] - plane) < reach for side, plane in planes.items())
     ]
     if at:
-        names = " and ".join(dict.fromkeys(at))
+        names = " and ".join(at)
         edge = "an uneven edge" if packing.is_lattice else "the edge of a random packing"
         yield Cause.unknown("edge", f"how single disks at {edge} move otherwise than those around, at {names}", True)
 
@@ -282,10 +279,7 @@ def causes_at_surface(scene: DiskScene, motions: Motions) -> Iterator[Cause]:
     size = SINGLE * slowness * ground.brick.mean_diameter
     near = case.box[3] - NEAR_SURFACE * ground.brick.mean_diameter
     parts = {
-        name: {
-            "velocity": size * np.gradient(own.velocity, own.time, axis=0),
-            "displacement": size * own.velocity,
-        }
+        name: {"velocity": size * np.gradient(own.velocity, own.time, axis=0), "displacement": size * own.velocity}
         for name, own in motions.items()
         if own.place[1] > near
     }

@@ -81,10 +81,9 @@ class LoadPlace(NamedTuple):
 
 def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
     """The force-weighted middle (2,) m of the loads that start waves; None if waves enter through sides."""
-    found = places_of_loads(scene)
-    return (
-        np.average([each.middle for each in found], axis=0, weights=[each.force for each in found]) if found else None
-    )
+    if not (found := places_of_loads(scene)):
+        return None
+    return np.average([each.middle for each in found], axis=0, weights=[each.force for each in found])
 
 
 def places_of_loads(scene: DiskScene) -> list[LoadPlace]:

@@ -86,9 +86,8 @@ class Reflections:
         known = {motion: factor for motion, factor in own.items() if math.isfinite(matched[motion])}
         # sides of narrow bodies have more disks for their length than those of a periodic one
         equal = {motion: factor * wide[motion] / matched[motion] for motion, factor in known.items()}
-        end = with_boundaries(
-            end, replace(end.case, boundary={**end.case.boundary, side: table.with_factors(equal).at_rest()})
-        )
+        boundary = {**end.case.boundary, side: table.with_factors(equal).at_rest()}
+        end = with_boundaries(end, replace(end.case, boundary=boundary))
         measured = self._energies(scene, end, side, time_step)
         found: dict[Motion, Reflected] = {}
         for motion, factor in known.items():

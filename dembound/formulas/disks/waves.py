@@ -94,10 +94,8 @@ def delay_of(
     run, s; 0 for waves that are not stepped in time. frequencies : of this ground, if available.
     """
     along = frequencies or frequencies_of(ground)
-    frequency, slowness = max(
-        (_slowness(along(direction), ground.held, motion, step) for direction in directions),
-        key=lambda found: abs(found[1][1] - 1.0),
-    )
+    each = [_slowness(along(direction), ground.held, motion, step) for direction in directions]
+    frequency, slowness = max(each, key=lambda found: abs(found[1][1] - 1.0))
     frequency, slowness = np.delete(frequency, 1), np.delete(slowness, 1)
     rising = np.concatenate([[True], np.diff(np.maximum.accumulate(frequency)) > 0.0])
     # the packing's own long waves have another speed than the lattice's, and as many disks in a wave
@@ -135,17 +133,12 @@ def layers_of(
     plane, surface = scene.plane("bottom"), scene.plane("top")
     assert isinstance(scene.ground, LayeredGround)
     zones = [(low, high, ground) for low, high, _, ground in scene.ground.layers if high > plane]
-    return [
-        Layer(
-            min(high, surface) - low,
-            ground.density,
-            speed,
-            relative=(relative or _damped)(ground),
-            heavier=_dragged(ground),
-        )
-        for low, high, ground in reversed(zones)
-        for speed in [ground.wave_speeds(1)[0 if motion == "p" else 1]]
-    ]
+    found = []
+    for low, high, ground in reversed(zones):
+        thickness, speed = min(high, surface) - low, ground.wave_speeds(1)[0 if motion == "p" else 1]
+        modulus, dragged = (relative or _damped)(ground), _dragged(ground)
+        found.append(Layer(thickness, ground.density, speed, relative=modulus, heavier=dragged))
+    return found
 
 
 def mass_above(scene: DiskScene) -> float | None:

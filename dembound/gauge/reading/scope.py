@@ -118,7 +118,9 @@ def read_columns(path: Path) -> Columns:
 
     Raises CaseError for a file without lines of two numbers and more, and for other text between or behind them.
     """
-    text = _text(path)
+    text = decoded(content_of(path))
+    if "\0" in text:
+        raise CaseError([f'"{path}" is not a text of columns of numbers: it has bytes that no text has'])
     separator = _separator(text)
     rows = [(number, fields) for number, fields in enumerate(_fields(text, separator), start=1) if any(fields)]
     return _numbers(path, rows, separator)
@@ -144,14 +146,6 @@ def decoded(content: bytes) -> str:
         if CHINESE.search(content):
             return content.decode("gb18030", errors="replace")
         return content.decode("latin-1")  # where µ is the only usual character beyond ASCII
-
-
-def _text(path: Path) -> str:
-    """The text of a file; raises CaseError for one that is none."""
-    text = decoded(content_of(path))
-    if "\0" in text:
-        raise CaseError([f'"{path}" is not a text of columns of numbers: it has bytes that no text has'])
-    return text
 
 
 def _separator(text: str) -> str:
@@ -197,14 +191,8 @@ def _numbers(path: Path, rows: Sequence[tuple[int, list[str]]], separator: str) 
         raise CaseError([f'"{path}": line {rows[first - 1][0]} is no line of numbers like those around it'])
     left = [fields[: places[0]] for _, fields in rows[first:] if any(fields[: places[0]])]
     above = [joined(fields, len(rows[last][1])) if separator == " " else fields for _, fields in rows[:first]]
-    return Columns(
-        path=path,
-        header=left or above,
-        lines=[fields for _, fields in rows[first:]],
-        numbers=[number for number, _ in rows[first:]],
-        places=places,
-        decimal=decimal,
-    )
+    numbers, lines = map(list, zip(*rows[first:], strict=True))
+    return Columns(path, left or above, lines, numbers, places, decimal)
 
 
 def joined(fields: list[str], count: int) -> list[str]:
@@ -238,8 +226,7 @@ def _number(text: str, decimal: str) -> float | None:
 
 def _name(text: str) -> str:
     """The name of a column, without its unit; empty for only a unit in brackets."""
-    bracketed = UNIT_IN_NAME.match(text)
-    if bracketed:
+    if bracketed := UNIT_IN_NAME.match(text):
         return bracketed[1]
     return text.partition("/")[0].strip() if behind_slash(text) else text
 

@@ -88,7 +88,9 @@ def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -
     time, values, even = evenly(path, time, values)
     values, measured, notes = _converted(values, unit, reading)
     name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
-    read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {_in_words(time)}"
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    every = f"{1e6 * step:.4g} µs" if step < 1e-3 else f"{step:.4g} s"
+    read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {every}"
     return Signal(time, values, measured, (read, *even, *notes))
 
 
@@ -176,10 +178,8 @@ def evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     step = float(np.median(steps))
     worst = int(steps.argmax())
     if not steps[worst] <= LARGEST_GAP * step:
-        said = f"{steps[worst]:.4g} s at {time[worst]:.6g} s, others are {step:.4g} s"
-        raise CaseError(
-            [f"{path}: must have even times, there is a gap of {said}; keep the lines before or behind it alone"]
-        )
+        said = f"there is a gap of {steps[worst]:.4g} s at {time[worst]:.6g} s, others are {step:.4g} s"
+        raise CaseError([f"{path}: must have even times, {said}; keep the lines before or behind it alone"])
     even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
     return even, np.interp(even, time, values), [f"times: uneven, resampled every {step:.4g} s by straight lines"]
 
@@ -204,9 +204,3 @@ def _converted(values: np.ndarray, unit: Unit, reading: Reading) -> tuple[np.nda
         notes.append(f"stress: 1 {measured or 'unit'} is {reading.scale:g} Pa")
         measured = "Pa"
     return reading.scale * values, measured, notes
-
-
-def _in_words(time: np.ndarray) -> str:
-    """The step of even times, in words."""
-    step = float(time[-1] - time[0]) / (len(time) - 1)
-    return f"{1e6 * step:.4g} µs" if step < 1e-3 else f"{step:.4g} s"

@@ -31,24 +31,18 @@ TIMES = {
 }
 """Sizes of units of time in seconds, by name in lower case."""
 
+STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6}
+VOLTAGES = dict.fromkeys(("V", "volt", "volts", "Volt", "Volts"), 1.0) | {"mV": 1e-3, "millivolt": 1e-3}
+VOLTAGES |= {f"{micro}V": 1e-6 for micro in MICRO}
+STRAINS = dict.fromkeys(("strain", "Strain", "ε", "m/m", "mm/mm"), 1.0) | {"mm/m": 1e-3, "%": 1e-2}
+STRAINS |= {f"{micro}{name}": 1e-6 for micro in MICRO for name in ("ε", "m/m", "strain")}
+STRAINS |= {"ue": 1e-6, "microstrain": 1e-6}
+SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/s": 1e3}
+"""Sizes of units by name, in Pa, V, of strains, and in m/s."""
+
 VALUES = {
     unit: (of, size)
-    for of, units in {
-        "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm²": 1e6},
-        "V": {
-            **dict.fromkeys(("V", "volt", "volts", "Volt", "Volts"), 1.0),
-            **dict.fromkeys(("mV", "millivolt"), 1e-3),
-            **{f"{micro}V": 1e-6 for micro in MICRO},
-        },
-        "strain": {
-            **dict.fromkeys(("strain", "Strain", "ε", "m/m", "mm/mm"), 1.0),
-            "mm/m": 1e-3,
-            "%": 1e-2,
-            **dict.fromkeys((f"{micro}{name}" for micro in MICRO for name in ("ε", "m/m", "strain")), 1e-6),
-            **dict.fromkeys(("ue", "microstrain"), 1e-6),
-        },
-        "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/s": 1e3},
-    }.items()
+    for of, units in {"Pa": STRESSES, "V": VOLTAGES, "strain": STRAINS, "m/s": SPEEDS}.items()
     for unit, size in units.items()
 }
 """Unit -> base unit of its quantity, and its size in that."""
@@ -70,19 +64,16 @@ def value_unit(name: str) -> Unit | None:
 
 def required_time_unit(name: str) -> float:
     """A unit of time by `time_unit`; raises CaseError for a text that is none."""
-    found = time_unit(name)
-    if found is None:
+    if (found := time_unit(name)) is None:
         raise CaseError([f"--time-unit: is {name}, must be s, ms, µs (us) or ns"])
     return found
 
 
 def required_value_unit(name: str) -> Unit:
     """A unit of values by `value_unit`; raises CaseError for a text that is none."""
-    found = value_unit(name)
-    if found is None:
-        raise CaseError(
-            [f"--unit: is {name}, must be Pa, kPa, MPa, GPa, V, mV, µV (uV), strain, % (of strain) or µε (ue)"]
-        )
+    if (found := value_unit(name)) is None:
+        known = "Pa, kPa, MPa, GPa, V, mV, µV (uV), strain, % (of strain) or µε (ue)"
+        raise CaseError([f"--unit: is {name}, must be {known}"])
     return found
 
 
@@ -131,12 +122,9 @@ class Bridge:
         assert self.excitation is not None
         ratio = voltage / (self.excitation * self.gain)
         if not np.abs(ratio).max(initial=0.0) < 0.25:
-            most = f"{percent(np.abs(ratio).max(), 3)} of the excitation"
-            raise CaseError(
-                [f"--excitation: the signal is up to {most}, which no strain gives; check --gain and units"]
-            )
+            most = f"is up to {percent(np.abs(ratio).max(), 3)} of the excitation"
+            raise CaseError([f"--excitation: the signal {most}, which no strain gives; check --gain and units"])
         nu = self.poisson or 0.0
-        factor, bend = {"quarter": (4.0, 2.0), "half": (2.0, 1.0), "full": (2.0 / (1.0 + nu), (1.0 - nu) / (1.0 + nu))}[
-            self.wiring
-        ]
+        full = 2.0 / (1.0 + nu), (1.0 - nu) / (1.0 + nu)
+        factor, bend = {"quarter": (4.0, 2.0), "half": (2.0, 1.0), "full": full}[self.wiring]
         return factor * ratio / (self.gauge_factor * (1.0 - bend * ratio))

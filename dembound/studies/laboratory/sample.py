@@ -24,8 +24,6 @@ from dembound.results.recording import TestName
 from dembound.studies.asked import USUAL_LOADING, Ends, Loading
 from dembound.words import with_unit
 
-"""How platens hold the ends: along their normal only, or in all directions."""
-
 LAW = "linearpbond"
 """The law of a sample whose case has one without strength."""
 
@@ -216,17 +214,17 @@ class Sample:
         """Lines of the tables that load the sample; paraview : its files for ParaView."""
         packing = self.case.packing
         if self.test == "brazilian":
-            middle, radius = 0.5 * self.width, 0.5 * self.width
+            half = f"{0.5 * self.width:.9g}"
             yield from ("[[hole]]  # the sample is round", 'type = "circle"', 'name = "sample"')
-            yield from (f"centre = [{middle:.9g}, {middle:.9g}]", f"radius = {radius:.9g}", 'keep = "inside"', "")
+            yield from (f"centre = [{half}, {half}]", f"radius = {half}", 'keep = "inside"', "")
         if pressure > 0.0:
             yield from ("[[load]]  # a membrane, before the test and during it", 'name = "membrane"')
             yield from (f"pressure = {pressure:.6g}", f"sides = {list(SIDES)}".replace("'", '"'), "")
             yield from (
                 "[static]  # at rest under this pressure",
                 f"ratio = {AT_REST:g}  # as single disks may come off",
-                "",
             )
+            yield ""
         elif self.case.material.locked_in is not None:
             yield from ("[static]  # the packing's own stress comes to rest", "")
         jaw = 0.5 * max(JAW * self.width, LEAST_JAW * 2.0 * packing.radius)
@@ -247,11 +245,7 @@ class Sample:
         yield from ("[output]", f"snapshots = {SNAPSHOTS}", f'paraview = "{paraview}"', "pictures = false")
 
 
-def sample_of(
-    case: DiskCase,
-    test: str,
-    loading: Loading = USUAL_LOADING,
-) -> Sample:
+def sample_of(case: DiskCase, test: str, loading: Loading = USUAL_LOADING) -> Sample:
     """A sample of the material of a case; test : a `TestName`. loading : with the size of the case's disks by default.
 
     A given width makes it twice as high; a Brazilian sample is round, of this width. Lengths of lattices are rounded to

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.targets import Scatter
 from dembound.casefile.types import LAWS
 from dembound.disks.material.constants import drawn
@@ -130,6 +131,12 @@ class Search:
     cohesion: float = 1.0
     spread: float = 0.0
     moments: float = 1.0
+
+    @classmethod
+    def of(cls, material: Material, targets: Mapping[TestName, float]) -> Search:
+        """The search that begins with the bonds of a material."""
+        ten, coh = material.pb_ten, material.pb_coh
+        return cls(targets, coh / ten if ten and coh else 1.0, spread_of(material.pb_scatter), material.pb_mcf)
 
     @property
     def ratio(self) -> float | None:
@@ -275,14 +282,11 @@ def with_bonds(case: DiskCase, pb_ten: float, pb_coh: float) -> DiskCase:
     return changed
 
 
-def measure_in(
-    make: Callable[[DiskCase, TestName], Sample],
-    case: DiskCase,
-    seeds: int,
-    options: Options,
-    folder: Path,
-    report: Report,
-) -> Measure:
+Make = Callable[[DiskCase, TestName], Sample]
+"""Cuts the sample of a test from a case."""
+
+
+def measure_in(make: Make, case: DiskCase, seeds: int, options: Options, folder: Path, report: Report) -> Measure:
     """The strengths of samples that `make` cuts from a case; every trial has a folder of its own within a folder.
 
     Raises RunError when a run has failed or has no peak, RecordError for a folder that is a link.

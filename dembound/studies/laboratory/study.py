@@ -123,7 +123,7 @@ class Tested:
         found = []
         for pressure in dict.fromkeys(each.pressure for each in self.done):
             rows = [self.values(each) for each in self.done if each.pressure == pressure]
-            group = _group(self.sample, pressure)
+            group = {"pressure": pressure} if self.sample.test == "biaxial" else {}
             for name in rows[0]:
                 values = [row[name] for row in rows if np.isfinite(row[name])]
                 found += [statistic(group, name, values)] if values else []
@@ -172,10 +172,9 @@ class Tested:
         fast = [(c.rate, limit) for c in curves if c.rate > (limit := self.sample.rate_limit(c.strain[c.at_peak]))]
         if fast:
             rate, limit = max(fast, key=lambda pair: pair[0] / pair[1])
-            yield (
-                f"strain rate {rate:.3g} 1/s is above {limit:.3g} 1/s, ε_peak·c/(15 H), so inertia raises the peak "
-                f"({len(fast)} of {len(curves)} samples); give a lower --rate"
-            )
+            above = f"strain rate {rate:.3g} 1/s is above {limit:.3g} 1/s, ε_peak·c/(15 H)"
+            raises = f"inertia raises the peak ({len(fast)} of {len(curves)} samples)"
+            yield f"{above}, so {raises}; give a lower --rate"
 
 
 def measured(curve: LoadingCurve, shares: tuple[float, float] = SHARES) -> dict[str, float]:
@@ -217,9 +216,8 @@ def specimens_of(sample: Sample, seeds: int, pressures: Sequence[float] | None =
             seed = int(sample.seeded(by).get("seed", 0))
             name = f"seed={seed}" + (f",pressure={pressure:.6g}" if sample.test == "biaxial" else "")
             changes = {"packing.seed": seed, "pressure": pressure}
-            found.append(
-                Specimen(seed, pressure, Member(name, changes, replace(case, name=name), key_of(case, ["run"])))
-            )
+            member = Member(name, changes, replace(case, name=name), key_of(case, ["run"]))
+            found.append(Specimen(seed, pressure, member))
     return found
 
 
@@ -257,8 +255,3 @@ def _listed(names: Sequence[str]) -> str:
     """The first few names, and how many more there are."""
     more = len(names) - MOST_NAMED
     return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-
-
-def _group(sample: Sample, pressure: float) -> dict[str, float]:
-    """What the runs of a mean share: the pressure of a biaxial test."""
-    return {"pressure": pressure} if sample.test == "biaxial" else {}

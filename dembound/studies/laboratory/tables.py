@@ -23,15 +23,10 @@ MOST_POINTS = 400
 SUMMARY = "test.json"
 
 OPPOSITES: dict[TestName, tuple[TestName, ...]] = {
-    "ucs": ("tension", "brazilian"),
-    "biaxial": ("tension", "brazilian"),
-    "tension": ("ucs", "biaxial"),
-    "brazilian": ("ucs", "biaxial"),
+    **dict.fromkeys(("ucs", "biaxial"), ("tension", "brazilian")),
+    **dict.fromkeys(("tension", "brazilian"), ("ucs", "biaxial")),
 }
 """Tests with whose strength that of a test makes the ratio of uniaxial compressive and tensile strength."""
-
-UNIAXIAL: dict[TestName, str] = {"biaxial": "uniaxial"}
-"""Quantity that is the uniaxial strength of a test; by default its strength."""
 
 
 class Ratio(NamedTuple):
@@ -60,16 +55,14 @@ class _Summary:
 
 def write_tables(tested: Tested, ratios: Sequence[Ratio]) -> list[Path]:
     """Write all tables, and the case of each run, into the folder of a test; returns the paths."""
-    folder = tested.folder
-    paths = [folder / "test.csv", folder / "curves.csv", folder / SUMMARY]
-    write_csv(paths[0], _rows(tested))
-    write_csv(paths[1], _points(tested))
-    write_json(paths[2], _summary(tested, ratios))
-    cases = folder / "cases"
+    test, curves, summary, cases = (tested.folder / name for name in ("test.csv", "curves.csv", SUMMARY, "cases"))
+    write_csv(test, _rows(tested))
+    write_csv(curves, _points(tested))
+    write_json(summary, _summary(tested, ratios))
     make_folder(cases)
     for specimen in tested.specimens:
         write_text(cases / f"{specimen.member.name}.toml", specimen.member.case.text)
-    return [*paths, cases]
+    return [test, curves, summary, cases]
 
 
 def _rows(tested: Tested) -> Iterator[Sequence[Any]]:
@@ -96,35 +89,20 @@ def _points(tested: Tested) -> Iterator[Sequence[Any]]:
 def _summary(tested: Tested, ratios: Sequence[Ratio]) -> dict[str, Any]:
     """The contents of ``test.json``, see docs/tasks/laboratory.md."""
     sample = tested.sample
-    young, poisson, speed = sample.elastic
+    size = {key: getattr(sample, key) for key in ("width", "height", "ends", "damp", "rate")}
+    homogenised = dict(zip(("young", "poisson", "p_wave_speed"), sample.elastic, strict=True))
+    runs, statistics = [], []
+    for each, state in zip(tested.specimens, tested.states, strict=True):
+        own = {"name": each.member.name, "seed": each.seed, "pressure": each.pressure, "state": state}
+        runs.append(own | (tested.values(each) if state == "done" else {}))
+    for mean in tested.statistics:
+        numbers = {key: getattr(mean, key) for key in ("count", "mean", "spread", "interval")}
+        unit = UNITS.get(mean.quantity, "1")
+        statistics.append({**mean.group, "quantity": mean.quantity, "unit": unit, **numbers})
     return {
-        "test": sample.test,
-        "case": sample.case.name,
-        "version": __version__,
-        "sample": {key: getattr(sample, key) for key in ("width", "height", "ends", "damp", "rate")}
-        | {"shares": list(tested.shares)},
-        "packing": sample.packing,
-        "material": sample.material,
-        "homogenised": {"young": young, "poisson": poisson, "p_wave_speed": speed},
-        "runs": [
-            {
-                "name": each.member.name,
-                "seed": each.seed,
-                "pressure": each.pressure,
-                "state": state,
-                **(tested.values(each) if state == "done" else {}),
-            }
-            for each, state in zip(tested.specimens, tested.states, strict=True)
-        ],
-        "statistics": [
-            {
-                **each.group,
-                "quantity": each.quantity,
-                "unit": UNITS.get(each.quantity, "1"),
-                **{key: getattr(each, key) for key in ("count", "mean", "spread", "interval")},
-            }
-            for each in tested.statistics
-        ],
+        **{"test": sample.test, "case": sample.case.name, "version": __version__},
+        **{"sample": size | {"shares": list(tested.shares)}, "packing": sample.packing, "material": sample.material},
+        **{"homogenised": homogenised, "runs": runs, "statistics": statistics},
         "ratios": [{"value": each.value, "other": each.other, "folder": str(each.folder)} for each in ratios],
         "warnings": list(tested.warnings),
     }
@@ -152,5 +130,5 @@ def _strength_in(folder: Path, test: TestName, material: dict[str, Any]) -> floa
 
 def _uniaxial(test: TestName, statistics: Sequence[_Mean | Statistic]) -> float | None:
     """The mean uniaxial strength (Pa) among the statistics of a test."""
-    name = UNIAXIAL.get(test, "strength")
+    name = "uniaxial" if test == "biaxial" else "strength"
     return next((each.mean for each in statistics if each.quantity == name and each.mean), None)

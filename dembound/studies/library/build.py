@@ -103,17 +103,19 @@ def build_library(
     with progress_of(case.name) as progress:
         for warning in warnings_before(planned):
             progress.warned(warning)
-    planned = _with_settings(planned)
-    lead = _lead(planned, spacing)
+    if planned.scene.outside is not None:  # its settings as keys, so that they do not depend on the waves
+        given = planned.scene.outside.settings.given
+        planned = plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
+    waves = planned.scene.ground_waves
+    # a wave of [incident] that passes the first disks before its point would else begin within a run
+    lead = 0 if waves is None else math.ceil(waves.across / spacing)
     base = _base(planned, spacing, case.run.duration if duration is None else duration, lead)
     folder = results / f"{case.name}_library"
     remove(folder / FILE)
     names = inputs_of(case)
-    plain = _of_runs(base, lead * spacing)
+    plain, triangle = _of_runs(base, lead * spacing), _triangle(spacing, lead * spacing)
     cases = [] if is_at_rest(case) else [under(plain, {}, REST)]
-    cases += [
-        under(_settled(plain, folder), {name: _triangle(spacing, lead * spacing)}, f"{HAT}{name}") for name in names
-    ]
+    cases += [under(_settled(plain, folder), {name: triangle}, f"{HAT}{name}") for name in names]
     for each in cases:
         Folder(folder, each.name).check()
     for each in cases:
@@ -148,45 +150,22 @@ def _of_disks(case: Case) -> DiskCase:
     return as_kind(case, DiskCase, "is the case of a bar")
 
 
-def _with_settings(planned: Plan[DiskScene]) -> Plan[DiskScene]:
-    """The plan of the case with the settings of its continuum as keys, so that they do not depend on the waves."""
-    if planned.scene.outside is None:
-        return planned
-    given = planned.scene.outside.settings.given
-    return plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
-
-
 def _base(planned: Plan[DiskScene], spacing: float, duration: float, lead: int) -> DiskCase:
-    """The case with the step, the duration and the output of a library, and inputs that begin after all its runs."""
+    """The case with the step, the duration and the output of a library, and inputs that begin after all its runs.
+
+    lead : spacings that triangles begin after a run, and that records are zero after their first value.
+    """
     case = planned.scene.case
     time_step = _time_step(case, planned.time_step, spacing)
-    steps = round(spacing / time_step)
-    stride = _largest_divisor(steps, max(1, round(case.output.history_interval / time_step)))
+    steps, most = round(spacing / time_step), max(1, round(case.output.history_interval / time_step))
+    stride = next(divisor for divisor in range(min(most, steps), 0, -1) if steps % divisor == 0)
     run = {key: value for key, value in case.run.given().items() if key not in CHOSEN}
-    changes: dict[str, Any] = {
-        "run": run | {"time_step": time_step, "duration": duration},
-        "output": {
-            "history_interval": stride * time_step,
-            "snapshots": 0,
-            "pictures": False,
-            "load_factor": case.output.load_factor,
-        },
-        "wave": {
-            name: _triangle(spacing, 2.0 * (duration + lead * spacing)) | _motion_of(case, name)
-            for name in inputs_of(case)
-        },
-    }
-    return with_changes(case, changes)
-
-
-def _lead(planned: Plan[DiskScene], spacing: float) -> int:
-    """Spacings that triangles begin after the run, and that records are zero after their first value.
-
-    Without it a wave of ``[incident]`` that passes the first disks before its point would begin within a run.
-    """
-    if (waves := planned.scene.ground_waves) is None:
-        return 0
-    return math.ceil(waves.across / spacing)
+    run |= {"time_step": time_step, "duration": duration}
+    output = {"history_interval": stride * time_step, "snapshots": 0, "pictures": False}
+    output |= {"load_factor": case.output.load_factor}
+    silent = _triangle(spacing, 2.0 * (duration + lead * spacing))
+    waves = {name: silent | _motion_of(case, name) for name in inputs_of(case)}
+    return with_changes(case, {"run": run, "output": output, "wave": waves})
 
 
 def _of_runs(base: DiskCase, longer: float) -> DiskCase:
@@ -218,16 +197,9 @@ def _time_step(case: DiskCase, usual: float, spacing: float) -> float:
     if case.run.time_step == "auto":
         return spacing / math.ceil(steps - WHOLE)
     if abs(steps - round(steps)) > WHOLE * steps or round(steps) < 1:
-        nearest = spacing / max(1, math.ceil(steps))
-        raise CaseError(
-            [f'run.time_step: is {usual:g} s, must be a whole fraction of the spacing, {nearest:.10g} s, or "auto"']
-        )
+        must = f"a whole fraction of the spacing, {spacing / max(1, math.ceil(steps)):.10g} s"
+        raise CaseError([f'run.time_step: is {usual:g} s, must be {must}, or "auto"'])
     return usual
-
-
-def _largest_divisor(number: int, most: int) -> int:
-    """The largest divisor of a whole number that is at most `most`."""
-    return next(divisor for divisor in range(min(most, number), 0, -1) if number % divisor == 0)
 
 
 class _WithoutWarnings(Progress):

@@ -96,17 +96,14 @@ def on_spacing(wave: FileWave, clock: RecordTimes) -> np.ndarray:
     if values[0] != 0.0:
         raise ValueError(f"begins with {values[0]:g}, must begin with 0; put a line with 0 before it")
     if values[-1] != 0.0 and times[-1] < duration - WHOLE * spacing:
-        raise ValueError(
-            f"ends with {values[-1]:g} before the library does, must end with 0; put a line with 0 after it"
-        )
+        must = "must end with 0; put a line with 0 after it"
+        raise ValueError(f"ends with {values[-1]:g} before the library does, {must}")
     points = np.interp(np.linspace(0.0, len(places) - 1.0, len(wave.line.values)), np.arange(len(places)), places)
     found = np.interp(np.arange(places[-1] + 1.0), points, wave.line.values, left=0.0)
     if found[: lead + 1].any():
-        first = spacing * (np.flatnonzero(found)[0] - 1)
-        needed = (
-            f"the wave of [incident] passes the first disks before its point; it must be 0 up to {lead * spacing:g} s"
-        )
-        raise ValueError(f"begins at {first:g} s, but {needed}")
+        first, until = spacing * (np.flatnonzero(found)[0] - 1), f"it must be 0 up to {lead * spacing:g} s"
+        passes = "the wave of [incident] passes the first disks before its point"
+        raise ValueError(f"begins at {first:g} s, but {passes}; {until}")
     return found
 
 
@@ -212,16 +209,15 @@ class Library:
         facts = read_json(folder / FILE, _Facts)
         self.name, self.spacing, self.inputs, self.lead = facts.name, facts.spacing, facts.inputs, facts.lead
         if facts.version != __version__:
-            raise CaseError(
-                [f"{folder}: is a library of dembound {facts.version}, this is {__version__}; make it anew"]
-            )
+            said = f"is a library of dembound {facts.version}, this is {__version__}"
+            raise CaseError([f"{folder}: {said}; make it anew"])
         try:
             self.case = as_kind(loads(facts.case, folder, self.name), DiskCase, "is the case of a bar")
         except CaseError as error:
             raise RecordError([f"{folder / FILE}: is damaged, its case: {error.problems[0]}"]) from None
         if facts.inputs != inputs_of(self.case):
             raise RecordError([f"{folder / FILE}: is damaged: its inputs are not those of its case"])
-        with open_record(self._record(f"{HAT}{self.inputs[0]}")) as file:
+        with open_record(self.record(f"{HAT}{self.inputs[0]}")) as file:
             groups = file["histories"]
             self.monitors = list(groups)
             times = groups[self.monitors[0]]["time"][:]
@@ -266,8 +262,7 @@ class Library:
         summed: np.ndarray | float = 0.0
         for name, record in values.items():
             crests = record[1 : self._rows + 1]  # the first triangle has its crest at Δ
-            spectrum = rfft(crests, self._length)
-            summed = summed + spectrum[:, None] * self._spectra[name]
+            summed = summed + rfft(crests, self._length)[:, None] * self._spectra[name]
         rows = np.asarray(irfft(np.atleast_2d(summed), self._length, axis=0))[: self._rows]
         samples = rows.reshape(-1, len(self.monitors), WIDTH)[: len(self.time)]
         moved: np.ndarray = samples + self.rest
@@ -298,17 +293,12 @@ class Library:
             found[name] = np.asarray(rfft(padded.reshape(self._rows, -1), self._length, axis=0))
         return found
 
-    @property
-    def record_at_rest(self) -> Path:
-        """The record of the run without waves."""
-        return self._record(REST)
-
     def _motion(self, run: str) -> np.ndarray:
         """Motion (k, monitors, 6) in one of the library's runs."""
-        with open_record(self._record(run)) as file:
+        with open_record(self.record(run)) as file:
             each = [np.hstack([group["displacement"][:], group["velocity"][:]]) for group in file["histories"].values()]
         return np.stack(each, axis=1)
 
-    def _record(self, run: str) -> Path:
+    def record(self, run: str) -> Path:
         """The record of one of the library's runs."""
         return self.folder / run / "run.h5"

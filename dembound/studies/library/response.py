@@ -20,7 +20,7 @@ from dembound.results.datasets import describe, write
 from dembound.results.new_record import DISPLACEMENT_UNIT, VELOCITY_UNIT, write_inputs
 from dembound.results.reader import open_record
 from dembound.running.planning import plan, warnings_before
-from dembound.studies.library.build import under
+from dembound.studies.library.build import REST, under
 from dembound.studies.library.library import Library, Record
 
 
@@ -121,7 +121,7 @@ def _settled(library: Library, contact: WatchedContact, disks: np.ndarray) -> np
     """Stretch, shear and turn (3,) of two disks at the end of the static stage."""
     if library.case.static is None:
         return np.zeros(3)
-    with open_record(library.record_at_rest) as file:
+    with open_record(library.record(REST)) as file:
         settled = file["static/displacement"][:][disks]
     motion = np.zeros((1, len(library.monitors), settled.shape[1]))
     motion[0, contact.monitors] = settled

@@ -125,11 +125,8 @@ def weaker(case: DiskCase, factor: float) -> DiskCase:
         changes |= {key: degrees(atan(tan(radians(angle)) / factor)) for key, angle in angles.items() if angle}
         return table.model_copy(update=changes)
 
-    layers, joints, groups = (
-        tuple(map(divided, case.layer)),
-        tuple(map(divided, case.joint)),
-        tuple(map(divided, case.group)),
-    )
+    layers, joints = tuple(map(divided, case.layer)), tuple(map(divided, case.joint))
+    groups = tuple(map(divided, case.group))
     return replace(case, material=divided(case.material), layer=layers, joint=joints, group=groups)
 
 
@@ -145,9 +142,8 @@ def require_strengths(case: DiskCase) -> None:
     if case.static is None:
         problems.append("static: is missing; --strength brings the body to rest under its weight")
     if not any(gravity(case.load)):
-        problems.append(
-            "load: has no weight, which --strength needs; give a [[load]] with acceleration = [0.0, -9.81] and no wave"
-        )
+        advice = "give a [[load]] with acceleration = [0.0, -9.81] and no wave"
+        problems.append(f"load: has no weight, which --strength needs; {advice}")
     if problems:
         raise CaseError(problems)
 
@@ -288,7 +284,5 @@ def _no_rest(searches: Sequence[Search]) -> Iterator[str]:
     for search in searches:
         last = next((each for each in search.tried if abs(each.value) == search.fails), None)
         if last is not None and last.ended == NO_REST and last.left > 0 and not last.has_jumped:
-            yield (
-                f"{search.name}: no rest at {last.value:.4g}, but only {last.left:,} disks have left their places; the "
-                "body may stand without these"
-            )
+            left = f"only {last.left:,} disks have left their places; the body may stand without these"
+            yield f"{search.name}: no rest at {last.value:.4g}, but {left}"

@@ -167,20 +167,10 @@ class _Work:
             self._under_way[workers.submit(self._task(member))] = member
 
     def _task(self, member: Member) -> Task:
-        case, options = member.case, self._options
-        return Task(
-            name=member.name,
-            key=member.key,
-            text=case.text,
-            case_folder=case.folder.resolve(),
-            files=case.files,
-            action=options.action,
-            method=options.method,
-            current=Path.cwd(),
-            folder=self._folder,
-            begun=self._marks.begun.resolve(),
-            stop=self._marks.stop.resolve(),
-        )
+        case, options, marks = member.case, self._options, self._marks
+        places = Path.cwd(), self._folder, marks.begun.resolve(), marks.stop.resolve()
+        text = case.text, case.folder.resolve(), case.files
+        return Task(member.name, member.key, *text, options.action, options.method, *places)
 
     def _take(self, performed: Performing, workers: Workers) -> None:
         """Keep the outcome of a member; a member whose process was lost is repeated once, then counted as failed."""

@@ -191,13 +191,11 @@ def _write_record(path: Path, swept: Swept, averages: Sequence[Statistic]) -> No
         describe(file, {"name": case.name, "title": case.title, "case": case.text, "version": __version__})
         describe(file, {"action": swept.action, "shown": json.dumps(swept.shown)})
         members = file.create_group("members")
-        for name, texts in (
-            ("name", [member.name for member in swept.members]),
-            ("state", swept.states),
-            ("changes", [json.dumps(member.changes) for member in swept.members]),
-            ("group", [json.dumps(member.group) for member in swept.members]),
-        ):
-            members.create_dataset(name, data=np.array([text(each) for each in texts]))
+        texts = {"name": [member.name for member in swept.members], "state": swept.states}
+        for name in ("changes", "group"):
+            texts[name] = [json.dumps(getattr(member, name)) for member in swept.members]
+        for name, own in texts.items():
+            members.create_dataset(name, data=np.array([text(each) for each in own]))
         seconds = np.array([np.nan if each is None else each.seconds for each in swept.outcomes])
         write(members, "seconds", seconds, "s")
         values = file.create_group("values")

@@ -102,9 +102,8 @@ class Processes(Workers):
             number = pool.submit(os.getpid)
         children = [each for each in multiprocessing.active_children() if each not in others]
         if not children:
-            raise RunError(
-                "a process for members ended as it began, as where memory, or the right to begin it, is short"
-            )
+            why = "as where memory, or the right to begin it, is short"
+            raise RunError(f"a process for members ended as it began, {why}")
         return Process(children[0], pool, number)
 
     def has_room(self, under_way: int) -> bool:

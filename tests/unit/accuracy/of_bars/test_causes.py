@@ -12,7 +12,7 @@ from dembound.accuracy.budget import Budget
 from dembound.accuracy.choice import Choice
 from dembound.accuracy.judge import extended
 from dembound.accuracy.of_bars.causes import NO_ECHO, NO_GRID, ExactMotion, causes_of_bar
-from dembound.accuracy.of_bars.judge import finer
+from dembound.accuracy.of_bars.judge import BarJudge
 from dembound.accuracy.runner import Run
 from dembound.bar.scene import build_bar
 from dembound.formulas.bars.rods import Window
@@ -223,7 +223,7 @@ def choices(case, *spacings: float) -> list[Choice]:
 )
 def test_its_nodes_are_where_those_of_all_choices_are(spalling, spacings, cells: int) -> None:
     case = spalling()
-    found = finer(case, choices(case, *spacings), [outcome(0.5)])
+    found = BarJudge().finer(case, choices(case, *spacings), [outcome(0.5)])
     assert found.case.bar.cells == found.cells == cells
     assert found.spacing == pytest.approx(1.0 / cells)
 
@@ -236,7 +236,7 @@ def test_it_is_the_same_bar_by_finite_differences_at_courant_one(spalling) -> No
             "load.1.nodes": 3,
         }
     )
-    found = finer(case, choices(case, 0.025), [outcome(0.5)]).case
+    found = BarJudge().finer(case, choices(case, 0.025), [outcome(0.5)]).case
     assert found.run.model_dump(exclude_unset=True) == {"duration": 1e-3, "courant": 1.0}
     assert found.method.type == "finite_difference"
     assert found.load[0].nodes == 1  # on the end, at any spacing
@@ -246,7 +246,7 @@ def test_it_is_the_same_bar_by_finite_differences_at_courant_one(spalling) -> No
 def test_it_records_at_the_places_of_every_choice(spalling) -> None:
     case = spalling()
     of_choices = [outcome(0.35, 1.0), outcome(0.325, 1.0)]
-    found = finer(case, choices(case, 0.05, 0.025), of_choices)
+    found = BarJudge().finer(case, choices(case, 0.05, 0.025), of_choices)
     assert [monitor.position for monitor in found.case.monitor] == pytest.approx([0.325, 0.35, 1.0])
     run = Run(motions={m.name: outcome(m.position).motions["g0"] for m in found.case.monitor})
     for choice in of_choices:

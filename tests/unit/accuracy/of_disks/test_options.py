@@ -9,7 +9,7 @@ import pytest
 from scene_tables import grains
 from small_cases import GRAINS, PUSHED, Tables, around, small
 
-from dembound.accuracy.of_disks.arrangements import WORTH, BoxOfDisks, box_tables, cheapest_box, may_be_boxed
+from dembound.accuracy.of_disks.arrangements import WORTH, BoxOfDisks, changes_to_box, cheapest_box, may_be_boxed
 from dembound.accuracy.of_disks.cost import Counted, planned_cost
 from dembound.accuracy.of_disks.options import Options
 from dembound.api import case
@@ -115,9 +115,7 @@ def tunnel(**changes: Any) -> DiskCase:
 def boxed(case: DiskCase) -> tuple[BoxOfDisks, DiskScene]:
     """The cheapest box of a case, and the scene of its tables, which differ only by the box."""
     found = cheapest_box(build(case))
-    tables = box_tables(case, found.box)
-    packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
-    return found, build(with_changes(case, {"packing": packing, **tables}))
+    return found, build(with_changes(case, changes_to_box(case, found.box)))
 
 
 def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
