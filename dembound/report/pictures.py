@@ -23,11 +23,10 @@ from dembound.kinds import kind_of_record
 from dembound.motion.kind import MovingPicture
 from dembound.plot.moving import TimeLine
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP, pixels_of, styled
-from dembound.plot.table import x_label
+from dembound.plot.table import named_lines, x_label
 from dembound.results.histories import monitor_names
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from PIL.Image import Image
@@ -82,7 +81,7 @@ def chart_of(figure: Figure) -> dict[str, Any] | None:
 
     It has a panel for each of the figure's axes with lines; lines end at the ends of the x axis.
     """
-    panels = [panel for panel in figure.axes if _named(panel)]
+    panels = [panel for panel in figure.axes if named_lines(panel)]
     if not panels:
         return None
     shared = panels[0].get_shared_y_axes()
@@ -95,16 +94,11 @@ def chart_of(figure: Figure) -> dict[str, Any] | None:
                 "title": panel.get_title("left") or panel.get_title(),
                 "y": panel.get_ylabel() or figure.get_supylabel(),
                 "range": [float(end) for end in panel.get_xlim()],
-                "lines": [_line(each, panel.get_xlim()) for each in _named(panel)],
+                "lines": [_line(each, panel.get_xlim()) for each in named_lines(panel)],
             }
             for panel in panels
         ],
     }
-
-
-def _named(panel: Axes) -> list[Line2D]:
-    """The lines of a panel that have a name."""
-    return [line for line in panel.lines if line.get_gid() is not None]
 
 
 def _line(line: Line2D, ends: tuple[float, float]) -> dict[str, Any]:
