@@ -200,8 +200,8 @@ def _charts(runs: Sequence[ReportedRun], attempt: Callable[[Callable[[], Any]], 
         draws.append(partial(plot_histories, records, quantity="stress"))
     draws += [partial(plot_spectra, records, component) for component in components]
     for draw in draws:
-        if picture := attempt(lambda draw=draw: picture_of(draw())):
-            yield picture
+        if figure := attempt(draw):
+            yield picture_of(figure)
 
 
 def _components(records: Sequence[Path]) -> list[Any]:

@@ -221,7 +221,7 @@ TABLES: dict[str, Callable[[Sequence[ReportedRun]], Table | None]] = {
     "sides": sides,
     "energies": lambda runs: side_by_side("Energy at the end", runs, _energies),
     "error_estimate": lambda runs: side_by_side(
-        "Estimated errors", runs, lambda run: entries(run.summary[KEY]) if KEY in run.summary else ()
+        "Estimated errors", runs, lambda run: entries(run.summary[KEY]) if KEY in run.summary else iter(())
     ),
     "time_split": lambda runs: side_by_side("Where the time went", runs, _time),
     "versions": lambda runs: side_by_side("Versions", runs, _version),
