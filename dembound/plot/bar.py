@@ -185,8 +185,7 @@ def _draw_map(panel: Axes, course: SpaceTimeField, name: str) -> ScalarMappable:
     panel.add_image(picture)
     if len(course.crack_time):
         looks: dict[str, Any] = {"s": 9.0, "color": "black", "linewidths": 0.0, "zorder": 2.5}
-        looks["label"] = f"bond broken ({len(course.crack_time):,})"
-        panel.scatter(course.crack_place, course.crack_time, **looks)
+        panel.scatter(course.crack_place, course.crack_time, label=f"bond broken ({len(course.crack_time):,})", **looks)
     for index, (method, since) in enumerate(course.changes):
         dashes = line_style(index + 2)["linestyle"]  # unlike the line in the panel of damage below
         label = f"{method} from {course.moment(since)}"

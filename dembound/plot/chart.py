@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from dembound.plot.point_labels import Labelled, Labels
-from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
+from dembound.plot.style import COLOURS, REFERENCE, new_figure, plain_numbers, styled
 from dembound.results.reader import open_record, text_of
 from dembound.results.structure import Members
 
@@ -57,6 +57,9 @@ LETTERS, SMALL_LETTERS = 12.5, 14.0
 
 INDENT = "     "
 """Before all but the first line of an entry of the list."""
+
+Entry = tuple[str, str, bool]
+"""Text, colour and weight of an entry of the list."""
 
 
 @dataclass(frozen=True)
@@ -108,21 +111,23 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
-        choices, runs = Members(file, "choices"), Members(file, "runs")
-        dots = [_read(number, choice) for number, choice in enumerate(choices.values(), start=1)]
+        dots = [_read(number, choice) for number, choice in enumerate(Members(file, "choices").values(), start=1)]
         reference, truth, covered = (text_of(file["reference"].attrs[name]) for name in ("sentence", "of", "covered"))
         own = {k + 1 for k in file["reference"].attrs["choices"]}
         quantity, title = text_of(file.attrs["quantity"]), title or text_of(file.attrs["title"] or file.attrs["name"])
-        sentence, threads = text_of(file.attrs["sentence"]), _threads(runs)
-    figure, panel, side = _page()
+        sentence = text_of(file.attrs["sentence"])
+        threads = max(int(run.attrs["threads"]) for run in Members(file, "runs").values())
+    figure = new_figure(*PAGE)
+    panels = figure.subplots(1, 2, width_ratios=BESIDE) if _is_wide() else figure.subplots(2, 1, height_ratios=BELOW)
+    panel, side = panels
     good = [dot for dot in dots if not dot.failure and dot.number not in own]
     _draw(panel, good)
     for number in sorted(own):
         label, cost = f"cost of the reference, {number}", dots[number - 1].cost
         panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=label)
     monitors = ", ".join(dict.fromkeys(dot.monitor for dot in good))
-    panel.set_xlabel(f"cost: CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
-    panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
+    along = f"cost: CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}"
+    panel.set(xlabel=along, ylabel=f"RMS error of the {quantity}, worst monitor (%)")
     heading = [f"errors {truth}, beside {reference}; {monitors}", covered]
     panel.set_title("\n".join(_wrapped(line, _letters(0)) for line in heading), loc="left", fontsize=8.5)
     if any(dot.on_front for dot in dots):
@@ -131,16 +136,8 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     figure.suptitle(f"{title}\n{_wrapped(sentence, int(LETTERS * PAGE[0]))}", fontsize=10, parse_math=False)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # labels fit into this panel
-    numbered = _label(figure, panel, good)
-    _list(side, dots, own, numbered)
+    _list(side, dots, own, _label(panel, good))
     return figure
-
-
-def _page() -> tuple[Figure, Axes, Axes]:
-    """The figure, and its panels for the chart and for the list."""
-    figure = new_figure(*PAGE)
-    panels = figure.subplots(1, 2, width_ratios=BESIDE) if _is_wide() else figure.subplots(2, 1, height_ratios=BELOW)
-    return figure, *panels
 
 
 def _is_wide() -> bool:
@@ -165,18 +162,12 @@ def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
     return Dot(number, text_of(group.attrs["name"]), on_front, "", error, cost, exact, monitor, found, apart)
 
 
-def _threads(runs) -> int:  # type: ignore[no-untyped-def]
-    """The largest number of threads of any run."""
-    return max(int(run.attrs["threads"]) for run in runs.values())
-
-
 def _draw(panel: Axes, dots: Sequence[Dot]) -> None:
     """Draw all points, the front as a line, and the levels."""
     panel.set(xscale="log", yscale="log")
     for dot in dots:
-        colour = COLOURS[1] if dot.on_front else COLOURS[0]
         size, marker = (7.0, "o") if dot.on_front else (5.0, "o" if dot.error > LEAST else "v")
-        panel.plot(*dot.place, marker, color=colour, markersize=size, zorder=3, gid=dot.name)
+        panel.plot(*dot.place, marker, color=COLOURS[int(dot.on_front)], markersize=size, zorder=3, gid=dot.name)
     line = _front(dots)
     if len(line):
         looks: dict[str, Any] = {"color": COLOURS[1], "linewidth": 1.6, "marker": "o", "markersize": 7.0}
@@ -193,15 +184,11 @@ def _front(dots: Sequence[Dot]) -> np.ndarray:
     return np.array(sorted((dot.place for dot in dots if dot.on_front), key=lambda place: place[1])).reshape(-1, 2)
 
 
-def _label(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> list[int]:
+def _label(panel: Axes, dots: Sequence[Dot]) -> list[int]:
     """Write names and numbers beside the points, those on the front first; the numbers of those without a name."""
-    points = [
-        Labelled(dot.number, dot.marked, dot.place, COLOURS[1] if dot.on_front else COLOURS[0], dot.on_front)
-        for dot in dots
-    ]
-    legend = panel.get_legend()
-    taken = [] if legend is None else [legend.get_window_extent()]
-    return Labels(figure, panel, points, [_front(dots)], taken).write(MOST_LISTED)
+    points = [Labelled(dot.number, dot.marked, dot.place, COLOURS[int(dot.on_front)], dot.on_front) for dot in dots]
+    taken = [] if (legend := panel.get_legend()) is None else [legend.get_window_extent()]
+    return Labels(panel, points, [_front(dots)], taken).write(MOST_LISTED)
 
 
 def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
@@ -212,8 +199,7 @@ def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
         wider = max(1.0, np.sqrt(span * low / high))
         axis.set_view_interval(low / wider, high * wider, ignore=True)
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / low < DECADES else (1.0,), numticks=12))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_formatter(NullFormatter())
+        plain_numbers(axis)
 
 
 def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int], numbered: Collection[int]) -> None:
@@ -236,24 +222,13 @@ def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int], numbered: Coll
     height = line / max(1.0, line * lines)
     y = 1.0
     for text, colour, bold in entries:
-        panel.text(
-            0.0,
-            y,
-            text,
-            transform=panel.transAxes,
-            va="top",
-            fontsize=8.5 * height / line,
-            color=colour,
-            fontweight="bold" if bold else "normal",
-            linespacing=1.0,
-        )
+        looks: dict[str, Any] = {"color": colour, "fontweight": "bold" if bold else "normal", "linespacing": 1.0}
+        panel.text(0.0, y, text, transform=panel.transAxes, va="top", fontsize=8.5 * height / line, **looks)
         y -= height * (text.count("\n") + 1)
 
 
-def _entries(
-    head: str, dots: Sequence[Dot], colour: str, numbered: Collection[int] | None = None
-) -> list[tuple[str, str, bool]]:
-    """Text, colour and weight of every line of a part of the list.
+def _entries(head: str, dots: Sequence[Dot], colour: str, numbered: Collection[int] | None = None) -> list[Entry]:
+    """The lines of a part of the list.
 
     numbered : choices whose lines begin with their number; None: all.
     """
@@ -269,7 +244,7 @@ def _entries(
     return found
 
 
-def _footnote(dots: Sequence[Dot]) -> list[tuple[str, str, bool]]:
+def _footnote(dots: Sequence[Dot]) -> list[Entry]:
     """The meaning of the mark, if any choice has it."""
     farthest = max(dot.apart for dot in dots)
     text = f"{MARK} monitors record elsewhere than in the reference, up to {farthest:.3g} m away"
@@ -280,6 +255,5 @@ def _wrapped(text: str, width: int, indent: str = "") -> str:
     """A text in lines of at most `width` characters, in which every number is on one line with the word after it."""
     import textwrap
 
-    together = re.sub(r"(?<=\d) (?=\S)", NO_BREAK, text)
-    lines = textwrap.wrap(together, width, subsequent_indent=indent)
+    lines = textwrap.wrap(re.sub(r"(?<=\d) (?=\S)", NO_BREAK, text), width, subsequent_indent=indent)
     return "\n".join(lines).replace(NO_BREAK, " ")

@@ -76,15 +76,8 @@ def frame(panel: Axes, window: Window) -> None:
 
 def draw_disks(axes: Axes, positions: np.ndarray, radii: np.ndarray, **looks: Any) -> EllipseCollection:
     """Add disks to the axes in true size; positions (n, 2) and radii (n,) in m; looks : arguments for matplotlib."""
-    disks = EllipseCollection(
-        2.0 * radii,
-        2.0 * radii,
-        np.zeros(len(radii)),
-        units="xy",
-        offsets=positions,
-        offset_transform=axes.transData,
-        **looks,
-    )
+    place: dict[str, Any] = {"units": "xy", "offsets": positions, "offset_transform": axes.transData}
+    disks = EllipseCollection(2.0 * radii, 2.0 * radii, np.zeros(len(radii)), **place, **looks)
     axes.add_collection(disks, autolim=False)
     return disks
 
@@ -244,16 +237,19 @@ def draw_continuum(
     """
     axes.set_facecolor("white")
     for window in disks:
-        gaps = Rectangle(tuple(window.corner), *window.size, facecolor=EMPTY, linewidth=0.0, zorder=BELOW)
-        axes.add_patch(gaps)
+        axes.add_patch(Rectangle(tuple(window.corner), *window.size, facecolor=EMPTY, linewidth=0.0, zorder=BELOW))
     element = scale * float(np.median(continuum.elements[:, 2:] - continuum.elements[:, :2]))
     if values is not None:
         _draw_field(axes, continuum, values, limits, element)
-    corners = _corners(continuum.elements)
+    corners, looks = _corners(continuum.elements), dict[str, Any]()
     if element >= FINEST_ELEMENT:
-        looks: dict[str, Any] = {"facecolors": "none", "edgecolors": LINE, "linewidths": 0.4, "zorder": ABOVE_CELLS}
+        looks = {"facecolors": "none", "edgecolors": LINE, "linewidths": 0.4, "zorder": ABOVE_CELLS}
         axes.add_collection(PolyCollection(list(corners), label="elements of the continuum", **looks), autolim=False)
-    _draw_layers(axes, corners[continuum.absorbs])
+    if continuum.absorbs.any():  # hatched, as one patch
+        layers = corners[continuum.absorbs]
+        closed = Path(np.append(layers, layers[:, :1], axis=1).reshape(-1, 2), np.tile(AROUND, len(layers)))
+        looks = {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "////", "zorder": ABOVE_CELLS}
+        axes.add_patch(PathPatch(closed, label="layers that absorb, in place of the ground beyond", **looks))
     if len(continuum.surface) > 0:
         looks = {"colors": "black", "linewidths": 1.2, "label": "free surface of the continuum"}
         axes.add_collection(LineCollection(list(continuum.surface.reshape(-1, 2, 2)), **looks), autolim=False)
@@ -268,27 +264,13 @@ def _draw_field(
     at_corners = values[continuum.nodes]
     looks = {"zorder": BEHIND, **colours_within(limits)}
     if element < FINEST_CELL * np.sqrt(at_corners.shape[1]):
-        flat = PolyCollection(list(_corners(continuum.elements)), linewidths=0.0, antialiaseds=False, **looks)
-        flat.set_array(at_corners.mean(axis=(1, 2)))
-        axes.add_collection(flat, autolim=False)
+        looks |= {"linewidths": 0.0, "antialiaseds": False, "array": at_corners.mean(axis=(1, 2))}
+        axes.add_collection(PolyCollection(list(_corners(continuum.elements)), **looks), autolim=False)
         return
     first = np.arange(0, at_corners.size, 4)[:, None, None]
     x, y = continuum.corners.reshape(-1, 2).T
-    smooth = TriMesh(Triangulation(x, y, (first + HALVES).reshape(-1, 3)), **looks)
-    smooth.set_array(at_corners.ravel())
-    axes.add_collection(smooth, autolim=False)
-
-
-def _draw_layers(axes: Axes, corners: np.ndarray) -> None:
-    """Hatch the elements (k, 4, 2) m that absorb, as one patch."""
-    if len(corners) == 0:
-        return
-    closed = np.concatenate([corners, corners[:, :1]], axis=1).reshape(-1, 2)
-    path = Path(closed, np.tile(AROUND, len(corners)))
-    looks: dict[str, Any] = {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "////"}
-    axes.add_patch(
-        PathPatch(path, zorder=ABOVE_CELLS, label="layers that absorb, in place of the ground beyond", **looks)
-    )
+    cells = Triangulation(x, y, (first + HALVES).reshape(-1, 3))
+    axes.add_collection(TriMesh(cells, array=at_corners.ravel(), **looks), autolim=False)
 
 
 def _corners(elements: np.ndarray) -> np.ndarray:

@@ -99,10 +99,12 @@ def plot_energy(run: Path) -> Figure:
     with open_record(run) as file:
         name, columns, bar = text_of(file.attrs["name"]), energy_of(file), is_line(file.attrs["size"])
         sides = side_energies_of(file)
-    lines = _not_negligible([*_of_ledger(columns, bar, bool(sides)), *_of_sides(sides, bar)])
+    lines = [*_of_ledger(columns, bar, bool(sides)), *_of_sides(sides, bar)]
+    sizes = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
+    lines = [line for line, size in zip(lines, sizes, strict=True) if size > line.least * max(sizes)]
     unit = time_unit(columns["time"][-1])
     time = columns["time"] / unit.seconds
-    power = power_of_unit(max((float(np.abs(line.values).max()) for line in lines), default=0.0))
+    power = power_of_unit(max(sizes, default=0.0))
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
     for line in lines:
@@ -113,8 +115,7 @@ def plot_energy(run: Path) -> Figure:
     joule = f"{PREFIXES[power]}J"
     upper.set_ylabel(f"energy ({joule})" if bar else f"energy per metre of thickness ({joule}/m)")
     upper.yaxis.set_major_formatter(Powers())
-    lower.set_ylabel("error (–)")
-    lower.set_xlabel(unit.label)
+    lower.set(xlabel=unit.label, ylabel="error (–)")
     lower.set_title("error of the balance over the largest energy supplied", loc="left", fontsize=9, pad=3)
     return finished(figure, f"{name}: energy supplied, stored, absorbed and dissipated", [upper], 3)
 
@@ -136,12 +137,6 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
             place = f"{name} {'end' if bar else 'side'}" + BESIDE.get(beside, "")
             own = {"color": HUES[index % len(HUES)], "markersize": 5.0, "markevery": (3 * index, 12)}
             yield EnergyLine(label.format(place), energies[column], looks | own)
-
-
-def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
-    """Lines that exceed a small share of the largest."""
-    largest = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
-    return [line for line, each in zip(lines, largest, strict=True) if each > line.least * max(largest)]
 
 
 def power_of_unit(largest: float) -> int:

@@ -13,14 +13,7 @@ from dembound.plot.disks import ContinuumCells, Window, read_continuum
 from dembound.plot.lines_of_ground import LayersOfSide, Segments, areas_in, foot_in, layers_in, segments_in
 from dembound.plot.outlines import read_holes
 from dembound.results.histories import FREE_FIELD
-from dembound.results.reader import (
-    laws_in_words,
-    laws_of,
-    require_run,
-    snapshots_of,
-    text_of,
-    walls_at,
-)
+from dembound.results.reader import laws_in_words, laws_of, require_run, snapshots_of, text_of, walls_at
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced", "layer"]
 
@@ -80,12 +73,10 @@ class Disks:
     @cached_property
     def window(self) -> Window:
         """The whole scene: a continuum, as far as `SHOWN_LAYER` into what absorbs, and walls as far as `SEEN`."""
-        own = self.own_window
+        disks = own = self.own_window
+        margin = SEEN * float(max(disks.size))
         for line in self.walls:
-            margin = SEEN * float(max(self.own_window.size))
-            near = np.clip(
-                line, self.own_window.corner - margin, self.own_window.corner + self.own_window.size + margin
-            )
+            near = np.clip(line, disks.corner - margin, disks.corner + disks.size + margin)
             own = own.with_other(Window(near.min(axis=0), np.ptp(near, axis=0)))
         if self.continuum is None:
             return own

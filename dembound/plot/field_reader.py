@@ -60,20 +60,22 @@ class FieldInRecord:
         file, last = chosen[0].file, times[-1]
         moves = [displacement_of(group) for group in chosen]
         is_moved, ends = self.factor != 0.0, gone_at(file)
-        beyond = None if not is_moved or self.beyond is None else f"{GROUP}/displacement"
+        beyond = moved_beyond = None
+        if self.beyond is not None:
+            beyond = np.array([group[self.beyond][:, self.column] for group in chosen]) / self.scale
+            if is_moved:
+                moved_beyond = self.factor * np.array([group[f"{GROUP}/displacement"][:, :2] for group in chosen])
         return Field(
             captions=[f"t = {time:.3g} s" for time in times],
             values=np.array([group[self.dataset][:, self.column] for group in chosen]) / self.scale,
-            beyond=None
-            if self.beyond is None
-            else np.array([group[self.beyond][:, self.column] for group in chosen]) / self.scale,
+            beyond=beyond,
             cracks=[drawn_cracks(file, time, moved, self.factor) for time, moved in zip(times, moves, strict=True)],
             limits=(-self.limit, self.limit),
             name=self.words,
             unit=self.unit,
             sense=self.sense,
             moved=self.factor * np.array(moves) if is_moved else None,
-            moved_beyond=None if beyond is None else self.factor * np.array([group[beyond][:, :2] for group in chosen]),
+            moved_beyond=moved_beyond,
             walls=tuple(walls_at(file, last, self.factor).values()) or None if is_moved else None,
             cut=self.cut,
             gone=None if ends is None else np.array(times)[:, None] > ends,
@@ -101,12 +103,10 @@ def find_field(
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:
         having = "static stages that stalled" if name == "unbalanced" else "runs with output.stress = true"
-        raise CaseError(
-            [f"{file.filename}: holds no {dataset.replace('unbalanced', 'unbalanced forces')}; {having} do"]
-        )
-    beyond = f"{GROUP}/{dataset}" if f"{GROUP}/{dataset}" in groups[0] else None
-    if dataset == "stress" and is_scattered(file):
-        beyond = None
+        lacking = dataset.replace("unbalanced", "unbalanced forces")
+        raise CaseError([f"{file.filename}: holds no {lacking}; {having} do"])
+    is_beyond = f"{GROUP}/{dataset}" in groups[0] and not (dataset == "stress" and is_scattered(file))
+    beyond = f"{GROUP}/{dataset}" if is_beyond else None
     sizes = _sizes(groups, dataset)
     if beyond is not None:
         sizes = np.maximum(sizes, _sizes(groups, beyond, _outside_layers(file)))
@@ -114,11 +114,9 @@ def find_field(
     column, words, unit = _column(name, component, sizes[:, 1].max(axis=0))
     most, whole = sizes[:, :, column].max(axis=0)
     cut = bool(whole > OUTLYING * most > 0.0)
-    largest = sizes[:, 0 if cut else 1, column] / scale
-    factor = exaggeration(file, groups, exaggerate)
-    return FieldInRecord(
-        groups, dataset, beyond, column, words, SENSES.get(name, ""), unit, scale, largest, cut, factor
-    )
+    largest, factor = sizes[:, 0 if cut else 1, column] / scale, exaggeration(file, groups, exaggerate)
+    sense = SENSES.get(name, "")
+    return FieldInRecord(groups, dataset, beyond, column, words, sense, unit, scale, largest, cut, factor)
 
 
 def evenly_chosen(count: int, most: int) -> list[int]:
@@ -162,11 +160,9 @@ def _liveliest(file: h5py.File, groups: Sequence[h5py.Group]) -> int | None:
     for name, history in file.get("histories", {}).items():
         if not name.endswith(FREE_FIELD) and len(history["time"]):
             speeds = np.hypot(*history["velocity"][:, :2].T)
-            if (largest := float(speeds.max())) > fastest:
-                fastest, at = largest, float(history["time"][int(np.argmax(speeds))])
-    if at is None:
-        return None
-    return int(np.argmin([abs(float(group.attrs["time"]) - at) for group in groups]))
+            if speeds.max() > fastest:
+                fastest, at = speeds.max(), history["time"][int(np.argmax(speeds))]
+    return None if at is None else int(np.argmin([abs(group.attrs["time"] - at) for group in groups]))
 
 
 def _sizes(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndarray = slice(None)) -> np.ndarray:
@@ -196,9 +192,8 @@ def _layer(file: h5py.File) -> Field:
     if "layer" not in file["particles"]:
         raise CaseError([f"{file.filename}: holds no layers; runs of cases with [[layer]] do"])
     values = file["particles/layer"][:].astype(float)
-    count = float(values.max())
     cracks = drawn_cracks(file, 0.0, np.zeros((len(values), 2)), 0.0)
-    return Field([""], values[None], [cracks], (1.0, count), "layer", "1 at the surface")
+    return Field([""], values[None], [cracks], (1.0, float(values.max())), "layer", "1 at the surface")
 
 
 def _peak(file: h5py.File) -> Field:
@@ -212,13 +207,6 @@ def _peak(file: h5py.File) -> Field:
     sizes = [np.quantile(part, (QUANTILE, 1.0), method="inverted_cdf") for part in parts if len(part)]
     most, whole = np.max(sizes, axis=0)
     cut = bool(whole > OUTLYING * most > 0.0)
-    return Field(
-        captions=[f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"],
-        values=values[None],
-        cracks=[cracks],
-        beyond=None if beyond is None else beyond[None],
-        limits=(0.0, float(most if cut else whole) or 1.0),
-        name="largest speed",
-        unit="m/s",
-        cut=cut,
-    )
+    caption = f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"
+    limits, beside = (0.0, float(most if cut else whole) or 1.0), None if beyond is None else beyond[None]
+    return Field([caption], values[None], [cracks], limits, "largest speed", "m/s", beyond=beside, cut=cut)

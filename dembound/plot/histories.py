@@ -22,7 +22,7 @@ from dembound.plot.style import (
     time_unit,
 )
 from dembound.results.histories import SCALES, UNITS, Band, MonitorRecord, Quantity, read_bands, read_histories
-from dembound.results.reader import COMPONENTS, open_record, record_names
+from dembound.results.reader import COMPONENTS, record_names
 
 Component = Literal["x", "y", "both", "rotation"]
 
@@ -191,7 +191,7 @@ def chosen_monitors(
 
 def _without_twins(names: Iterable[str]) -> list[str]:
     """The monitors among names, each once."""
-    return [name for name in dict.fromkeys(names) if name.removesuffix(FREE_FIELD) == name]
+    return [name for name in dict.fromkeys(names) if not name.endswith(FREE_FIELD)]
 
 
 def left_out(shown: Sequence[str], histories: Sequence[Histories], requested: Sequence[str] | None) -> str:
@@ -266,7 +266,8 @@ def plot_section(
     drawn = those(histories, common)
     (column,) = [0] if quantity == "stress" else shown_columns(drawn, component)
     unit = _time_unit_of(drawn)
-    distances = [_distances(path, common) for path in runs]
+    places = [np.array([run[name].position for name in common]) for run in drawn]
+    distances = [np.hypot(*(each - each[0]).T) for each in places]
     largest = max(float(np.abs(h.values[:, column]).max(initial=0.0)) for run in drawn for h in run.values())
     gap = max(float(np.ptp(each)) for each in distances) / (len(common) - 1) or 1.0
     scale = SPREAD * gap / (largest or 1.0)
@@ -283,17 +284,8 @@ def plot_section(
     panel.set_xlabel(unit.label)
     where = "" if quantity == "stress" else f" {direction(column)}"
     panel.set_ylabel(f"distance from {common[0]} (m), {quantity}{where} upwards", fontsize=9)
-    size = f"{gap:.3g} m upwards is {gap / scale:.3g} {UNITS[quantity][column]}"
-    panel.set_title(size, loc="left", fontsize=9)
+    panel.set_title(f"{gap:.3g} m upwards is {gap / scale:.3g} {UNITS[quantity][column]}", loc="left", fontsize=9)
     return finished(figure, f"Section of the {quantity} at the monitors", [panel], 3)
-
-
-def _distances(path: Path, names: Sequence[str]) -> np.ndarray:
-    """Distances (k,) in m of monitors from the first of them."""
-    with open_record(path) as file:
-        places = np.array([file[f"histories/{name}"].attrs["position"] for name in names])
-    distances: np.ndarray = np.hypot(*(places - places[0]).T)
-    return distances
 
 
 ACROSS = 3
@@ -323,12 +315,11 @@ def plot_hodograph(
         for index, (run_name, run) in enumerate(zip(record_names(runs), histories, strict=True)):
             if name in run:
                 x, y = run[name].values[:, :2].T
-                style = line_style(index)
-                panel.plot(x, y, label=run_name, gid=name, linewidth=0.9, **style)
-                panel.plot(x[-1:], y[-1:], "o", color=style["color"])
+                (path,) = panel.plot(x, y, label=run_name, gid=name, linewidth=0.9, **line_style(index))
+                panel.plot(x[-1:], y[-1:], "o", color=path.get_color())
         panel.set_aspect("equal", adjustable="datalim")
         panel.set_title(monitor_title(name, histories), loc="left", fontsize=8)
         panel.set_xlabel(f"{quantity} along x ({unit})", fontsize=8)
         panel.set_ylabel(f"{quantity} along y ({unit})", fontsize=8)
     title = f"Paths of the {quantity} at the monitors, dots at their ends{left_out(shown, histories, monitors)}"
-    return finished(figure, title, list(np.ravel(panels)), 3)
+    return finished(figure, title, panels.flat, 3)

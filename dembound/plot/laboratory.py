@@ -70,18 +70,10 @@ def plot_curves(title: str, curves: Mapping[str, LoadingCurve]) -> Figure:
         if len(curve.crack_time):
             strain = np.interp(curve.crack_time, curve.time, percent)
             broken.step(strain, np.arange(1, len(strain) + 1), where="post", color=colour, linewidth=0.7, linestyle=":")
-            first = "first broken bond" if number == 0 else None
-            panel.plot(
-                strain[0],
-                curve.first_crack / MEGA,
-                "v",
-                color=colour,
-                markersize=7.0,
-                markeredgecolor="white",
-                label=first,
-            )
-    panel.set_xlabel("strain between the platens (%)")
-    panel.set_ylabel(STRESS[next(iter(curves.values())).kind])
+            looks: dict[str, Any] = {"color": colour, "markersize": 7.0, "markeredgecolor": "white"}
+            looks["label"] = "first broken bond" if number == 0 else None
+            panel.plot(strain[0], curve.first_crack / MEGA, "v", **looks)
+    panel.set(xlabel="strain between the platens (%)", ylabel=STRESS[next(iter(curves.values())).kind])
     broken.set_ylabel("broken bonds (dotted)")
     broken.set_ylim(bottom=0.0)
     broken.grid(False)
@@ -107,17 +99,10 @@ def plot_sample(record: Path, curve: LoadingCurve) -> Figure:
         nearest = [groups[int(np.argmin(np.abs(curve.gauge_time - time)))] for time in states.values()]
         motion = np.array([group["displacement"][:, axis] for group in nearest])
         limit = MARGIN * float(np.quantile(np.abs(motion[-2]), CALM)) or 1.0
-        shown = Field(
-            captions=[f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()],
-            values=motion,
-            cracks=[
-                drawn_cracks(file, time, displacement_of(group), 0.0)
-                for time, group in zip(states.values(), nearest, strict=True)
-            ],
-            limits=(-limit, limit),
-            name=f"displacement along {'xy'[axis]}",
-            unit="m",
-        )
+        at_states = zip(states.values(), nearest, strict=True)
+        cracks = [drawn_cracks(file, time, displacement_of(group), 0.0) for time, group in at_states]
+    captions = [f"{name}, {curve.stress_at(time) / MEGA:.3g} MPa" for name, time in states.items()]
+    shown = Field(captions, motion, cracks, (-limit, limit), f"displacement along {'xy'[axis]}", "m")
     width, height = disks.window.size
     scale = min(LARGEST[0] / width, LARGEST[1] / height)
     figure = new_figure(len(states) * (scale * width + 0.6) + 1.6, scale * height + 1.6)
@@ -154,25 +139,19 @@ def plot_envelope(title: str, tests: Sequence[tuple[float, float]], angle: float
     over.plot(pressure, strength, "o", color=COLOURS[0], label="samples")
     over.plot(ends, uniaxial + slope * ends, color=COLOURS[1], label=f"{uniaxial:.3g} MPa + {slope:.3g}·pressure")
     over.set(xlabel="pressure at the sides (MPa)", ylabel="largest axial stress (MPa)")
+    around = np.linspace(0.0, np.pi, 181)
     for number, each in enumerate(np.unique(pressure)):
         mean = float(strength[pressure == each].mean())
+        middle, half = 0.5 * (each + mean), 0.5 * (mean - each)
         label = "mean strength at each pressure" if number == 0 else None
-        _draw_circle(circles, each, mean, label)
+        circles.plot(middle + half * np.cos(around), half * np.sin(around), color=COLOURS[0], label=label)
     reach = np.array([0.0, 0.5 * (mean + each)])
     line = cohesion / MEGA + reach * np.tan(np.radians(angle))
-    label = f"φ = {angle:.3g}°, cohesion {cohesion / MEGA:.3g} MPa"
-    circles.plot(reach, line, color=COLOURS[1], label=label)
+    circles.plot(reach, line, color=COLOURS[1], label=f"φ = {angle:.3g}°, cohesion {cohesion / MEGA:.3g} MPa")
     circles.set(xlabel="normal stress, compression positive (MPa)", ylabel="shear stress (MPa)", aspect="equal")
     circles.set_xlim(0.0, 1.05 * strength.max())
     circles.set_ylim(0.0, 1.1 * max(0.5 * strength.max(), line.max()))
     return finished(figure, title, [over, circles], 2)
-
-
-def _draw_circle(panel: Axes, low: float, high: float, label: str | None) -> None:
-    """Half of Mohr's circle between two principal stresses."""
-    angle = np.linspace(0.0, np.pi, 181)
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    panel.plot(middle + half * np.cos(angle), half * np.sin(angle), color=COLOURS[0], label=label)
 
 
 MEASURED = {"Pa": ("stress", "MPa", MEGA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
@@ -219,8 +198,7 @@ def _gauge_history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
         height = np.exp(first - decay.value * findings.speed.value * (time - middle))
         label = f"exp(−αct), α = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
         panel.plot(1e3 * time, height / size, color=COLOURS[0], linestyle="--", label=label)
-    panel.set_xlabel("time (ms)")
-    panel.set_ylabel(f"{name}, tension positive ({unit})")
+    panel.set(xlabel="time (ms)", ylabel=f"{name}, tension positive ({unit})")
 
 
 def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> None:
@@ -234,8 +212,7 @@ def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> No
     label = f"largest tension at {strength.position:g} m: {strength.nominal / MEGA:.3g} MPa"
     panel.plot(strength.position, strength.nominal / MEGA, "*", color=COLOURS[-1], markersize=10, label=label)
     panel.axvline(strength.position, color=REFERENCE, linewidth=1.0, zorder=1)
-    panel.set_xlabel("distance from the loaded end (m)")
-    panel.set_ylabel("stress, tension positive (MPa)")
+    panel.set(xlabel="distance from the loaded end (m)", ylabel="stress, tension positive (MPa)")
 
 
 @styled
@@ -261,17 +238,10 @@ def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
     rates.plot(time, found.one_wave_rate, color=COLOURS[1], linestyle="--", label="one wave")
     _label_history(rates, "strain rate (1/s)", found)
     curve.plot(100.0 * found.strain, found.stress / MEGA, color=REFERENCE, label="three waves")
-    there = found.in_equilibrium
-    curve.plot(
-        np.where(there, 100.0 * found.strain, np.nan),
-        found.stress / MEGA,
-        color=COLOURS[0],
-        linewidth=2.4,
-        label="in equilibrium",
-    )
+    balanced = np.where(found.in_equilibrium, 100.0 * found.strain, np.nan)
+    curve.plot(balanced, found.stress / MEGA, color=COLOURS[0], linewidth=2.4, label="in equilibrium")
     curve.plot(100.0 * found.one_wave_strain, found.back / MEGA, color=COLOURS[1], linestyle="--", label="one wave")
-    curve.set_xlabel("strain (%)")
-    curve.set_ylabel("stress (MPa)")
+    curve.set(xlabel="strain (%)", ylabel="stress (MPa)")
     curve.legend()
     figure.suptitle("Specimen in a split Hopkinson test; shaded: equilibrium of its forces", fontsize=11)
     return figure
@@ -282,6 +252,5 @@ def _label_history(panel: Axes, quantity: str, found: Specimen) -> None:
     if found.equilibrium is not None:
         first, end = found.equilibrium
         panel.axvspan(*(found.time[[first, end - 1]] / MICRO), color="#D3E2F0")
-    panel.set_xlabel("time since the pulse has reached the specimen (µs)")
-    panel.set_ylabel(quantity)
+    panel.set(xlabel="time since the pulse has reached the specimen (µs)", ylabel=quantity)
     panel.legend()

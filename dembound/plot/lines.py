@@ -24,12 +24,22 @@ JOINT, THIN, WIDE = "black", 1.0, 4.5
 NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2
 """Size of a monitor's name in points, with its background."""
 
+PLATE = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+"""Background of the names of areas and layers."""
+
 
 def mark_walls(panel: Axes, walls: Sequence[np.ndarray]) -> None:
     """A line for every wall (p, 2) m."""
+    looks: dict[str, Any] = {"color": "black", "linewidth": 1.6, "zorder": ABOVE_DISKS}
     for number, line in enumerate(walls):
-        looks: dict[str, Any] = {"color": "black", "linewidth": 1.6, "zorder": ABOVE_DISKS, "scalex": False}
-        panel.plot(*line.T, label=None if number else "wall", scaley=False, **looks)
+        panel.plot(*line.T, label=None if number else "wall", scalex=False, scaley=False, **looks)
+
+
+def mark_seams(panel: Axes, disks: Disks, window: Window) -> None:
+    """A line between the body and each free-field column in a window of the scene."""
+    for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
+        if window.extent[0] < seam < window.extent[1]:
+            panel.axvline(seam, color="black", linewidth=1.0, label=label)
 
 
 def mark_joints(panel: Axes, disks: Disks, segments: Segments | None) -> None:
@@ -64,8 +74,7 @@ def mark_areas(panel: Axes, disks: Disks) -> None:
         panel.plot(*closed.T, color="black", linestyle=(0, (4, 3)), **looks)
         top = points[np.lexsort((points[:, 0], -points[:, 1].round(9)))[0]]
         place: dict[str, Any] = {"xytext": (3.0, -3.0), "textcoords": "offset points", "va": "top"}
-        plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-        panel.annotate(name, tuple(top), fontsize=7, bbox=plate, zorder=ABOVE_CRACKS, annotation_clip=True, **place)
+        panel.annotate(name, tuple(top), fontsize=7, bbox=PLATE, zorder=ABOVE_CRACKS, annotation_clip=True, **place)
 
 
 def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None:
@@ -73,7 +82,6 @@ def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None
     bottom, top = window.extent[2:]
     dashes: Sequence[dict[str, Any]] = {"color": "white"}, {"color": "black", "linestyle": (0, (6, 3))}
     looks: dict[str, Any] = {"linewidth": 0.7, "zorder": ABOVE_DISKS}
-    plate = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
     left, right, aligned = _beside_layers(disks, *window.extent[:2])
     for number, own in enumerate(disks.layers):
         ends = np.clip((own.low, own.high), left, right).tolist()
@@ -87,7 +95,7 @@ def mark_layers(panel: Axes, disks: Disks, window: Window, scale: float) -> None
             room = 72.0 * scale * np.array([ends[1] - ends[0], high - low])
             if (room > (LETTER_WIDTH * len(name) + 8.0, NAME_HEIGHT + 4.0)).all():
                 place: dict[str, Any] = {"xytext": (aside, -3.0), "textcoords": "offset points", "ha": at, "va": "top"}
-                panel.annotate(name, (ends[at == "right"], high), fontsize=7, bbox=plate, zorder=ABOVE_DISKS, **place)
+                panel.annotate(name, (ends[at == "right"], high), fontsize=7, bbox=PLATE, zorder=ABOVE_DISKS, **place)
     for way in dashes if len(disks.layers) > 1 else ():
         panel.plot((disks.layers[0].high,) * 2, (_one_below(disks.layers), top), **way, **looks)
 
@@ -101,11 +109,9 @@ def _surface_at(disks: Disks, place: float) -> float:
 
 def _one_below(sides: Sequence[LayersOfSide]) -> float:
     """Height y (m) below which two sides have the same layers."""
-    left, right = sides
+    names, joints = zip(*(side.names[::-1] for side in sides), strict=False), [side.joints[::-1] for side in sides]
     lowest = math.inf
-    for one, other, *ends in zip(
-        left.names[::-1], right.names[::-1], left.joints[::-1], right.joints[::-1], strict=False
-    ):
+    for (one, other), *ends in zip(names, *joints, strict=False):
         if one != other:
             break
         lowest = min(ends)

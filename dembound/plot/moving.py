@@ -12,9 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError
 from dembound.plot.bar import FIELDS, mark_damage, read_course
-from dembound.plot.disks import Window
 from dembound.plot.field import OF_THE_RUN, Field, FieldName, read_disks
-from dembound.plot.field_reader import FieldInRecord, find_field
+from dembound.plot.field_reader import find_field
 from dembound.plot.histories import plot_histories
 from dembound.plot.places import displacement_of, framed
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part, out_of_frame
@@ -80,7 +79,7 @@ class TimeLine:
 
 
 MARGIN = 0.05
-"""Margin of the vertical axes over the range of the values."""
+"""Margin of the vertical axes over the range of the values in all frames."""
 
 WIDTH = 11.0
 """Width of a frame, inches."""
@@ -114,9 +113,8 @@ class MovingBar:
         self._fields = fields
         self._places = np.broadcast_to(self._course.place, self._course.values[fields[0]].shape)
         if exaggerate:
-            self._places = (
-                self._places + exaggerate * FIELDS["displacement"].scale * self._course.values["displacement"]
-            )
+            factor = exaggerate * FIELDS["displacement"].scale
+            self._places = self._places + factor * self._course.values["displacement"]
         self.times = self._course.time * self._course.unit.seconds
         self.width, self.height = WIDTH, 1.6 + 2.2 * len(fields)
         self.figure = new_figure(self.width, self.height)
@@ -133,8 +131,11 @@ class MovingBar:
         """Draw a snapshot into all panels, in place of another one."""
         for panel, name in zip(self._panels, self._fields, strict=True):
             panel.clear()
-            panel.plot(self._places[index], self._course.values[name][index], color=COLOURS[0])
-            panel.set(xlim=(self._places.min(), self._places.max()), ylim=self._limits(name))
+            values = self._course.values[name]
+            low, high = (0.0, 1.0) if name == "damage" else (float(values.min()), float(values.max()))
+            margin = MARGIN * (high - low) or 1.0
+            panel.plot(self._places[index], values[index], color=COLOURS[0])
+            panel.set(xlim=(self._places.min(), self._places.max()), ylim=(low - margin, high + margin))
             panel.set_ylabel(FIELDS[name].label)
             if name == "damage":
                 mark_damage(panel)
@@ -143,13 +144,6 @@ class MovingBar:
             panel.tick_params(labelbottom=False)
         self._panels[0].set_title(self.caption(index))
         self._panels[-1].set_xlabel("x (m)")
-
-    def _limits(self, name: str) -> tuple[float, float]:
-        """The ends of the vertical axis of a field, the same in all frames."""
-        values = self._course.values[name]
-        low, high = (0.0, 1.0) if name == "damage" else (float(values.min()), float(values.max()))
-        margin = MARGIN * (high - low) or 1.0
-        return low - margin, high + margin
 
     def _mark_cracks(self, panel: Axes, index: int) -> None:
         """A mark at the foot of a panel for every bond broken up to a snapshot, at the bond's first place."""
@@ -203,48 +197,32 @@ class MovingScene:
             found = find_field(file, cast(FieldName, field), None, exaggerate)
             self.times = np.array([group.attrs["time"] for group in found.groups])
             self._cracks = [len(cracks_until(file, time)["time"]) for time in self.times]
-            self._window = self._framed(found)
+            self._window = self._disks.window
+            if found.factor != 0.0:
+                moves = (found.factor * displacement_of(group) for group in found.groups)
+                self._window = framed(self._window, self._disks.positions, self._disks.radii, moves)
             self._names = [group.name for group in found.groups]
             self._found = replace(found, groups=[])  # the file is closed
             largest = found.at([found.groups[int(np.argmax(found.largest))]])
             last = found.at([found.groups[-1]])
-        self._part = close_up(self._disks, largest.values[0]) if self._is_long else None
+        is_long = max(self._window.size) > LONG * min(self._window.size)
+        self._part = close_up(self._disks, largest.values[0]) if is_long else None
         self._make_panels()
         self._fill(last, len(self.times) - 1)
-        bar: dict[str, Any] = {
-            "label": last.label,
-            "shrink": 0.9,
-            "pad": 0.02,
-            "format": Powers(),
-            "extend": last.extend,
-        }
-        self.figure.colorbar(self._colours, ax=self._panels, **bar)
+        looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "extend": last.extend}
+        self.figure.colorbar(self._colours, ax=self._panels, label=last.label, **looks)
         moved = f", displacements × {found.factor:g}" if found.factor not in (0.0, 1.0) else ""
         self.words = f"{self._disks.case}: {last.name} of {self._disks.in_words}{moved}"
         self.figure.suptitle("\n".join(filter(None, [self.words, self._disks.laws])), fontsize=11)
         outside_legend(self.figure, self._panels, columns=3)
         lay_out(self.figure)
 
-    @property
-    def _is_long(self) -> bool:
-        length, width = max(self._window.size), min(self._window.size)
-        return bool(length > LONG * width)
-
-    def _framed(self, found: FieldInRecord) -> Window:
-        """The window of the scene in all snapshots."""
-        disks = self._disks
-        if found.factor == 0.0:
-            return disks.window
-        moves = (found.factor * displacement_of(group) for group in found.groups)
-        return framed(disks.window, disks.positions, disks.radii, moves)
-
     def _make_panels(self) -> None:
         """Make one panel, and for a long scene another for the enlarged part: below, or beside an upright scene."""
         windows = [self._window] if self._part is None else [self._window, self._part]
         upright = bool(self._part and self._window.size[1] > self._window.size[0])
-        room = [float(min(DRAWING / window.size)) for window in windows]
-        sizes = np.array([scale * window.size for scale, window in zip(room, windows, strict=True)])
-        across, up = sizes.T
+        self._scales = [float(min(DRAWING / window.size)) for window in windows]
+        across, up = np.array([scale * each.size for scale, each in zip(self._scales, windows, strict=True)]).T
         shape: dict[str, Any]
         if upright:
             self.width, self.height = float(across.sum()) + 3.8, float(up.max()) + 2.0
@@ -254,14 +232,12 @@ class MovingScene:
             shape = {"nrows": len(windows), "height_ratios": up}
         self.figure = new_figure(self.width, self.height)
         self._panels = list(self.figure.subplots(squeeze=False, **shape).flat)
-        self._scales = room
 
     def _fill(self, shown: Field, index: int) -> None:
         """Draw a snapshot into all panels, in place of another one."""
         whole, *close = self._panels
         whole.clear()
-        scale = self._scales[0]
-        dots = self.figure.dpi
+        scale, dots = self._scales[0], self.figure.dpi
         self._colours = draw_panel(whole, self._disks, shown, 0, self._window, scale * dots, numbered=False)
         mark_monitors(whole, self._disks, scale)
         out = out_of_frame(self._disks, shown, 0, self._window)

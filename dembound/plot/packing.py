@@ -16,8 +16,8 @@ from matplotlib.patches import Rectangle
 
 from dembound.errors import CaseError
 from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks, frame
-from dembound.plot.field import Disks, read_disks
-from dembound.plot.lines import mark_walls
+from dembound.plot.field import read_disks
+from dembound.plot.lines import mark_seams, mark_walls
 from dembound.plot.scene import DRAWING, LONG, part_around
 from dembound.plot.style import COLOURS, finished, new_figure, styled
 from dembound.results.reader import open_record, snapshot_of, snapshots_of, walls_at
@@ -92,12 +92,8 @@ def brick_disks(
     kinds = np.full(len(radii), "interior", dtype=object)
     kinds[owners[inside]] = "controller"
     kinds[rows.any(axis=1)] = "regular row"
-    followers = np.full(np.count_nonzero(inside), "follower", dtype=object)
-    return (
-        np.concatenate([positions, images[inside]]),
-        np.concatenate([own, owners[inside]]),
-        np.concatenate([kinds, followers]),
-    )
+    kinds = np.append(kinds, np.full(np.count_nonzero(inside), "follower", dtype=object))
+    return np.concatenate([positions, images[inside]]), np.append(own, owners[inside]), kinds
 
 
 @styled
@@ -117,10 +113,8 @@ def plot_patterns(parts: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
         exposed = np.zeros(len(radii), dtype=bool)
         exposed[edge] = True
         near = window.touches(positions, radii)
-        for chosen, colour, label in (
-            (near & ~exposed, "#D0D0D0", "other particles"),
-            (near & exposed, BLUE, "boundary particles"),
-        ):
+        for of_edge, colour, label in ((False, "#D0D0D0", "other particles"), (True, BLUE, "boundary particles")):
+            chosen = near & (exposed == of_edge)
             _draw_kind(panel, positions[chosen], radii[chosen], colour, label)
         frame(panel, window)
         panel.set_title(f"{name}: {len(edge)} boundary particles")
@@ -147,9 +141,6 @@ def _draw_kind(panel: Axes, positions: np.ndarray, radii: np.ndarray, colour: st
 
 COLUMN = "contacts/normal_force"
 """Dataset of a snapshot with the forces drawn."""
-
-KILO = 1e3
-"""Newtons in a kilonewton."""
 
 WIDEST = 0.5
 """Width of the widest lines over the mean diameter of disks."""
@@ -213,7 +204,9 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
     """
     with open_record(run) as file:
         disks, chains = read_disks(file), read_chains(file, snapshot)
-    window = _window(disks, chains)
+    window, size = disks.own_window, disks.own_window.size
+    if max(size) > LONG * min(size):  # the part around the largest forces
+        window = part_around(disks, disks.positions[np.argmax(chains.largest)])
     scale = min(DRAWING / window.size)
     width, height = scale * window.size
     figure = new_figure(max(width, NARROWEST) + 1.2, height + 1.8)
@@ -224,9 +217,7 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
         draw_disks(panel, chains.positions[shown], disks.radii[shown], facecolors=SHADE, linewidths=0.0)
     drawn = _draw_lines(panel, window, chains, max(LEAST_WIDTH, 72.0 * scale * WIDEST * 2.0 * disks.radii.mean()))
     mark_walls(panel, chains.walls)
-    for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
-        if window.extent[0] < seam < window.extent[1]:
-            panel.axvline(seam, color="black", linewidth=1.0, label=label)
+    mark_seams(panel, disks, window)
     return finished(figure, f"{disks.case}: normal forces of {drawn}, t = {chains.time:.3g} s", [panel], 3)
 
 
@@ -247,14 +238,6 @@ def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
     return Chains(time, positions, pairs, ends, group[COLUMN][:], tuple(walls_at(file, time).values()))
 
 
-def _window(disks: Disks, chains: Chains) -> Window:
-    """The window of all disks, or in a long scene of the part around the largest forces."""
-    size = disks.own_window.size
-    if max(size) <= LONG * min(size):
-        return disks.own_window
-    return part_around(disks, disks.positions[np.argmax(chains.largest)])
-
-
 def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> str:
     """Draw the contacts in a window, the widest with a width in points; returns in words what is drawn."""
     inside = ((chains.ends >= window.corner) & (chains.ends <= window.corner + window.size)).all(axis=2).any(axis=1)
@@ -273,4 +256,4 @@ def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> s
 
 def _in_words(force: float) -> str:
     """A force in N/m with two digits."""
-    return f"{np.format_float_positional(force / KILO, precision=2, fractional=False, trim='-')} kN/m"
+    return f"{np.format_float_positional(force / 1e3, precision=2, fractional=False, trim='-')} kN/m"

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
@@ -56,7 +55,6 @@ class Labels:
     lines : of the panel, each (k, 2), that names must not cover. taken : occupied rectangles, in pixels.
     """
 
-    figure: Figure
     panel: Axes
     points: Sequence[Labelled]
     lines: Sequence[np.ndarray] = ()
@@ -94,33 +92,23 @@ class Labels:
         """Whether a rectangle is inside the panel and covers no label or line."""
         wide = box.padded(GAP * self._pixel)
         inside = self.panel.get_window_extent()
-        return (
-            all(inside.contains(*corner) for corner in wide.corners())
-            and not any(wide.overlaps(other) for other in self.taken)
-            and not any(wide.contains(*each) for each in lines)
-        )
+        if any(wide.overlaps(other) for other in self.taken) or any(wide.contains(*each) for each in lines):
+            return False
+        return all(inside.contains(*corner) for corner in wide.corners())
 
     def _annotated(
         self, point: Labelled, text: str, offset: tuple[float, float], across: str, up: str, size: float
     ) -> Annotation:
         """The text, at an offset in points."""
         looks: dict[str, Any] = {"ha": across, "va": up, "color": point.colour, "parse_math": False}
-        return self.panel.annotate(
-            text,
-            point.place,
-            offset,
-            textcoords="offset points",
-            fontsize=size + 1.0 if point.is_bold else size,
-            fontweight="bold" if point.is_bold else "normal",
-            path_effects=[withStroke(linewidth=2.5, foreground="white")],
-            **looks,
-        )
+        looks |= {"fontsize": size + 1.0, "fontweight": "bold"} if point.is_bold else {"fontsize": size}
+        looks["path_effects"] = [withStroke(linewidth=2.5, foreground="white")]
+        return self.panel.annotate(text, point.place, offset, textcoords="offset points", **looks)
 
     def _along_lines(self) -> Iterator[np.ndarray]:
         """Places along the lines, in pixels."""
         for line in self.lines:
-            corners = self._pixels(line)
-            for first, last in pairwise(corners):
+            for first, last in pairwise(self._pixels(line)):
                 count = 2 + int(np.hypot(*(last - first)) / (STEP * self._pixel))
                 yield first + np.linspace(0.0, 1.0, count)[:, None] * (last - first)
 
@@ -131,7 +119,7 @@ class Labels:
     @property
     def _pixel(self) -> float:
         """Pixels of a point, 1/72 of an inch."""
-        return self.figure.dpi / 72.0
+        return float(self.panel.figure.dpi) / 72.0
 
 
 def _distances(box: Bbox, points: np.ndarray) -> np.ndarray:

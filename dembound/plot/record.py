@@ -11,7 +11,7 @@ from dembound.plot.histories import chosen_monitors, direction, largest_values, 
 from dembound.plot.spectra import LEGEND_OF_FAINT, draw_curve, fourier_curve, on_logarithmic_axes, response_curve
 from dembound.plot.style import Powers, finished, line_style, measured_once, new_figure, stacked_height, styled
 from dembound.records.processing import Motion
-from dembound.results.histories import MonitorRecord, read_histories
+from dembound.results.histories import read_histories
 from dembound.results.reader import COMPONENTS, record_names
 from dembound.spectra import FEWEST_PER_PERIOD
 from dembound.waves.wave import FADED, amplitude_spectrum
@@ -45,10 +45,8 @@ def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
         for panel, values in zip(column, (motion.acceleration, motion.velocity, motion.displacement), strict=False):
             panel.plot(motion.time, values, gid=name, **look | {"linewidth": 0.7})
         base = motion.acceleration, motion.time_step
-        for panel, curve in zip(
-            column[HISTORIES:], (fourier_curve(*base), response_curve(*base, FEWEST_PER_PERIOD)), strict=True
-        ):
-            draw_curve(panel, curve, name, name, look)
+        draw_curve(column[-2], fourier_curve(*base), name, name, look)
+        draw_curve(column[-1], response_curve(*base, FEWEST_PER_PERIOD), name, name, look)
         for panel in column[: HISTORIES - 1]:
             panel.tick_params(labelbottom=False)
         for panel, along in zip(column[HISTORIES - 1 :], ("time (s)", "frequency (Hz)", "period (s)"), strict=True):
@@ -56,10 +54,8 @@ def plot_motions(motions: Sequence[Motion], title: str) -> Figure:
         column[0].set_title(name)
     for panel, label in zip(panels[:, 0], LABELS, strict=True):
         panel.set_ylabel(label)
-    panels[HISTORIES, -1].plot([], [], **LEGEND_OF_FAINT)
-    panels[HISTORIES, -1].legend(
-        *([each[-1:] for each in panels[HISTORIES, -1].get_legend_handles_labels()]), loc="lower center", fontsize=8
-    )
+    faint = panels[HISTORIES, -1].plot([], [], **LEGEND_OF_FAINT)
+    panels[HISTORIES, -1].legend(handles=faint, loc="lower center", fontsize=8)
     for row in panels[HISTORIES:]:
         on_logarithmic_axes(row)
     figure.suptitle(title, fontsize=11)
@@ -120,39 +116,24 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     column = int(np.argmax(largest_values(drawn))) if component is None else COMPONENTS.index(component)
     figure = new_figure(9.0, stacked_height(len(shown)))
     panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)
-    spectra = []
+    spectra: list[tuple[np.ndarray, np.ndarray]] = []
     for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
         for name, history in run.items():
-            values = history.values[:, column]
-            if len(values) < FEWEST or not values.any():
+            if len(history.time) < FEWEST or not history.values[:, column].any():
                 continue
-            frequencies, amplitudes = spectrum_of(history, column)
+            # at equal intervals, as the last one of a run may be shorter than all others
+            time = np.linspace(history.time[0], history.time[-1], len(history.time))
+            values = np.interp(time, history.time, history.values[:, column])
+            frequencies, amplitudes = amplitude_spectrum(values, time[1] - time[0])
             spectra.append((frequencies, amplitudes))
             panels[shown.index(name), 0].plot(frequencies, amplitudes, label=label, gid=name, **line_style(index))
     title_monitors(panels, shown, drawn)
     for panel in panels[:, 0]:
         panel.yaxis.set_major_formatter(Powers())
-    panels[-1, 0].set_xlabel("frequency (Hz)")
-    panels[-1, 0].set(xlim=(0.0, _end_of(spectra)), ylim=(0.0, None))
+    least = FADED * max((amplitudes.max() for _, amplitudes in spectra), default=0.0)
+    ends = [frequencies[amplitudes >= least].max(initial=0.0) for frequencies, amplitudes in spectra]
+    panels[-1, 0].set(xlabel="frequency (Hz)", xlim=(0.0, float(max(ends, default=1.0))), ylim=(0.0, None))
     figure.supylabel("amplitude (m/s per Hz)", fontsize=10)
     measured_once(panels)
     title = f"Spectra of the velocity {direction(column)} at the monitors{left_out(shown, histories, None)}"
     return finished(figure, title, panels.flat, 3)
-
-
-def spectrum_of(history: MonitorRecord, column: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies (m,), Hz, and amplitudes (m,), m/s per Hz, of a component of a velocity.
-
-    As the last interval of a run may be shorter than all others, samples are interpolated at equal intervals.
-    """
-    time = np.linspace(history.time[0], history.time[-1], len(history.time))
-    values = np.interp(time, history.time, history.values[:, column])
-    return amplitude_spectrum(values, time[1] - time[0])
-
-
-def _end_of(spectra: Sequence[tuple[np.ndarray, np.ndarray]]) -> float:
-    """The frequency (Hz) above which all spectra are negligible relative to the largest value; 1 without any."""
-    least = FADED * max((amplitudes.max() for _, amplitudes in spectra), default=0.0)
-    return max(
-        (float(frequencies[amplitudes >= least].max(initial=0.0)) for frequencies, amplitudes in spectra), default=1.0
-    )

@@ -57,7 +57,7 @@ def plot_reflection(angles: np.ndarray, frequencies: np.ndarray, waves: Sequence
         upper.set_title(f"incident {each.name} waves")
     for panel in panels[:, 0]:
         panel.set_ylabel("energy sent back / incident (–)")
-    return finished(figure, title, list(panels.ravel()), 3)
+    return finished(figure, title, panels.flat, 3)
 
 
 @styled
@@ -88,7 +88,7 @@ def plot_types(
                 colour, dash = COLOURS[number % len(COLOURS)], DASHES[index % len(DASHES)]
                 line = f"{name}, {angle:g}°"
                 look: dict[str, Any] = {"color": colour, "linestyle": dash, "label": line, "gid": f"{kind}, {line}"}
-                panel.plot(frequencies, _drawn(shares[:, index]), **look)
+                panel.plot(frequencies, np.maximum(shares[:, index], LEAST), **look)
         panel.set(title=f"incident {kind} waves", xlabel="frequency (Hz)", xscale="log")
         _log(panel)
         if kind in spectra:
@@ -107,14 +107,12 @@ def _against_angle(panel: Axes, angles: np.ndarray, each: Curves) -> None:
     """Means and range over frequencies."""
     total = each.same + each.converted
     low, high = np.nanmin(total, axis=0), np.nanmax(total, axis=0)
-    panel.fill_between(
-        angles, _drawn(low), _drawn(high), color=COLOURS[0], alpha=0.2, linewidth=0.0, label="range over frequencies"
-    )
-    for number, (name, values) in enumerate(
-        {"in all": total, "as the same type": each.same, "as the other type": each.converted, **each.beside}.items()
-    ):
-        look: dict[str, Any] = dict(line_style(number))
-        panel.plot(angles, _drawn(np.nanmean(values, axis=0)), label=name, gid=f"{each.name}, {name}", **look)
+    ends = np.maximum(low, LEAST), np.maximum(high, LEAST)
+    panel.fill_between(angles, *ends, color=COLOURS[0], alpha=0.2, linewidth=0.0, label="range over frequencies")
+    shares = {"in all": total, "as the same type": each.same, "as the other type": each.converted, **each.beside}
+    for number, (name, values) in enumerate(shares.items()):
+        look: dict[str, Any] = {"label": name, "gid": f"{each.name}, {name}", **line_style(number)}
+        panel.plot(angles, np.maximum(np.nanmean(values, axis=0), LEAST), **look)
     panel.set_xlabel("angle from the normal (°)")
     _log(panel)
     panel.set_xlim(angles.min(), max(angles.max(), angles.min() + 1.0))
@@ -126,7 +124,7 @@ def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray,
     for index, colour, dash in zip(near, GREYS, DASHES, strict=False):
         values, name = (each.same + each.converted)[:, index], f"in all at {angles[index]:g}°"
         look: dict[str, Any] = {"color": colour, "linestyle": dash, "marker": "o", "markersize": 3.0}
-        panel.plot(frequencies, _drawn(values), label=name, gid=f"{each.name}, {name}", **look)
+        panel.plot(frequencies, np.maximum(values, LEAST), label=name, gid=f"{each.name}, {name}", **look)
     panel.set_xlabel("frequency (Hz)")
     _log(panel)
 
@@ -138,16 +136,14 @@ def _log(panel: Axes) -> None:
     panel.set_ylim(LEAST, 1.3)
 
 
-def _drawn(values: np.ndarray) -> np.ndarray:
-    """Shares clipped to the axis."""
-    return np.maximum(values, LEAST)
-
-
 CELLS = np.geomspace(2.0, 100.0, 800)
 """Range of spacings per wavelength, up to where wide horizons are exact to a few per cent."""
 
 WIDTH, WIDENED = 1.4, 2.0
-"""Width of a line in points, and the additional width for each further line of the same horizon above it."""
+"""Width (points) of a line over spacings per wavelength, and additional width for each line of the same horizon above.
+
+These nearly coincide, and each must be visible below the next.
+"""
 
 TICKS = (2, 3, 5, 10, 20, 50, 100)
 
@@ -168,12 +164,12 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
     """
     figure = new_figure(11.0, 4.4)
     left, middle, right = figure.subplots(1, 3)
-    widths = line_widths(lattices)
+    horizons = [lattice.horizon for lattice in lattices]
     for index, lattice in enumerate(lattices):
         style: dict[str, Any] = dict(line_style(index))
         wavenumber = np.linspace(0.0, lattice.shortest, 800)
         left.plot(wavenumber, _kilohertz(lattice.frequency(wavenumber)), label=name(lattice), **style)
-        style["linewidth"] = widths[index]
+        style["linewidth"] = WIDTH + WIDENED * horizons[index + 1 :].count(lattice.horizon)
         wavenumber = 2.0 * lattice.shortest / CELLS
         middle.plot(CELLS, lattice.phase_velocity(wavenumber) / lattice.wave_speed, **style)
         right.plot(CELLS, lattice.group_velocity(wavenumber) / lattice.wave_speed, **style)
@@ -184,18 +180,11 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
     _exact_lines(left, lattices)
     for panel, quantity in ((middle, "phase velocity ω/k / c (–)"), (right, "group velocity dω/dk / c (–)")):
         panel.axhline(1.0, color=REFERENCE, linewidth=1.0, zorder=1)
-        _cells_axis(panel)
-        panel.set_ylabel(quantity)
+        panel.set(xscale="log", xlim=(CELLS[0], CELLS[-1]), xticks=TICKS, ylim=(0.0, 1.15))
+        panel.xaxis.set_major_formatter(ScalarFormatter())
+        panel.xaxis.set_minor_formatter(NullFormatter())
+        panel.set(xlabel="spacings per wavelength (–)", ylabel=quantity)
     return finished(figure, "Dispersion of a bar of nodes; a horizon of 1 spacing is central differences", [left], 3)
-
-
-def line_widths(lattices: Sequence[Lattice]) -> list[float]:
-    """Line widths in points over spacings per wavelength, larger where more lattices of the same horizon follow.
-
-    The lines nearly coincide there, and each must be visible below the next.
-    """
-    horizons = [lattice.horizon for lattice in lattices]
-    return [WIDTH + WIDENED * horizons[index + 1 :].count(horizon) for index, horizon in enumerate(horizons)]
 
 
 def name(lattice: Lattice) -> str:
@@ -218,21 +207,8 @@ def _exact_lines(panel: Axes, lattices: Sequence[Lattice]) -> None:
     for speed in sorted({lattice.wave_speed for lattice in lattices}):
         label = f"no dispersion, c = {speed:g} m/s"
         panel.plot(ends, _kilohertz(speed * ends), color=REFERENCE, linewidth=1.0, zorder=1, label=label)
-    panel.set_xlim(0.0, ends[1])
-    panel.set_ylim(0.0, 1.1 * float(_kilohertz(highest)))
-    panel.set_xlabel("wave number k (rad/m)")
-    panel.set_ylabel("frequency ω/2π (kHz)")
-
-
-def _cells_axis(panel: Axes) -> None:
-    """Spacings per wavelength, long waves to the right."""
-    panel.set_xscale("log")
-    panel.set_xlim(CELLS[0], CELLS[-1])
-    panel.set_xticks(TICKS)
-    panel.xaxis.set_major_formatter(ScalarFormatter())
-    panel.xaxis.set_minor_formatter(NullFormatter())
-    panel.set_ylim(0.0, 1.15)
-    panel.set_xlabel("spacings per wavelength (–)")
+    panel.set(xlim=(0.0, ends[1]), ylim=(0.0, 1.1 * float(_kilohertz(highest))))
+    panel.set(xlabel="wave number k (rad/m)", ylabel="frequency ω/2π (kHz)")
 
 
 def _kilohertz(frequency: np.ndarray | float) -> np.ndarray:

@@ -26,6 +26,7 @@ from dembound.plot.lines import (
     mark_areas,
     mark_joints,
     mark_layers,
+    mark_seams,
     mark_walls,
 )
 from dembound.plot.outlines import draw_outlines
@@ -116,9 +117,8 @@ def plot_scene(
     else:
         figure, panels, colours = _draw_whole(disks, shown, window)
     ticks = MaxNLocator(integer=True) if field == "layer" else None
-    figure.colorbar(
-        colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers(), ticks=ticks, extend=shown.extend
-    )
+    looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "ticks": ticks, "extend": shown.extend}
+    figure.colorbar(colours, ax=panels, label=shown.label, **looks)
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
     return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
 
@@ -139,9 +139,8 @@ def _draw_whole(disks: Disks, shown: Field, window: Window) -> tuple[Figure, lis
     figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
     panel = figure.subplots()
     colours = draw_panel(panel, disks, shown, 0, window, scale * figure.dpi)
-    panel.set_title(
-        shown.captions[0] + out_of_frame(disks, shown, 0, window), pad=18
-    )  # above the names of monitors at the top
+    out = out_of_frame(disks, shown, 0, window)
+    panel.set_title(shown.captions[0] + out, pad=18)  # above the names of monitors at the top
     mark_monitors(panel, disks, scale)
     return figure, [panel], colours
 
@@ -227,9 +226,7 @@ def draw_panel(
         if beyond is not None and disks.foot is not None:
             left, right = disks.continuum.window.extent[:2]
             panel.hlines(disks.foot, left, right, label="below: motion without the free field", **FOOT)
-    for seam, label in zip(disks.seams, ("between the free-field column and the body", None), strict=False):
-        if window.extent[0] < seam < window.extent[1]:
-            panel.axvline(seam, color="black", linewidth=1.0, label=label)
+    mark_seams(panel, disks, window)
     mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
     mark_joints(panel, disks, shown.joints[index] if shown.joints else None)
@@ -272,11 +269,10 @@ def out_of_frame(disks: Disks, shown: Field, index: int, window: Window) -> str:
 
 def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
     """A triangle and a name at each monitor, a hollow triangle at each twin; `scale` in inches per metre."""
-    mark: dict[str, Any] = {"marker": "^", "s": 40, "clip_on": False, "zorder": ABOVE_CRACKS}
     if not disks.monitors:
         return
-    places = np.array(list(disks.monitors.values()))
-    x, y = places.T
+    mark: dict[str, Any] = {"marker": "^", "s": 40, "clip_on": False, "zorder": ABOVE_CRACKS}
+    x, y = np.array(list(disks.monitors.values())).T
     panel.scatter(x, y, color="black", edgecolors="white", label="monitor", **mark)
     if len(disks.twins):
         hollow: dict[str, Any] = {"facecolors": "white", "edgecolors": "black", "label": "its twin in the free field"}
@@ -302,25 +298,15 @@ def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, f
     letters
         of each name.
     """
-    taken = [(x - 4.0, y - 4.0, x + 4.0, y + 4.0) for x, y in marks]
+    low, high = marks - 4.0, marks + 4.0  # corners of what is there, marks and then names
+    way, up = np.array(BESIDE_MARK).T
     chosen = []
     for (x, y), count in zip(marks, letters, strict=True):
-        boxes = [_name_box(x, y, count, side) for side in BESIDE_MARK]
-        covered = [sum(_overlap(box, other) for other in taken) for box in boxes]
-        best = int(np.argmin(covered))
+        width = LETTER_WIDTH * count + 4.0
+        begins = np.stack([x + 8.0 * way + 0.5 * (way - 1.0) * width, y + up], axis=1)[:, None]
+        ends = begins + np.array([width, NAME_HEIGHT])
+        sides = np.maximum(np.minimum(ends, high) - np.maximum(begins, low), 0.0)
+        best = int(np.argmin(sides.prod(axis=2).sum(axis=1)))
         chosen.append(BESIDE_MARK[best])
-        taken.append(boxes[best])
+        low, high = np.append(low, begins[best], axis=0), np.append(high, ends[best], axis=0)
     return chosen
-
-
-def _name_box(x: float, y: float, letters: int, side: tuple[float, float]) -> tuple[float, float, float, float]:
-    """Left, bottom, right and top of a name next to a mark at (x, y), points."""
-    width, (way, up) = LETTER_WIDTH * letters + 4.0, side
-    left = x + 8.0 * way + 0.5 * (way - 1.0) * width
-    return left, y + up, left + width, y + up + NAME_HEIGHT
-
-
-def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> float:
-    """Common area of two boxes, points²."""
-    across = min(one[2], other[2]) - max(one[0], other[0])
-    return max(across, 0.0) * max(min(one[3], other[3]) - max(one[1], other[1]), 0.0)

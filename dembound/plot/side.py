@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
 from dembound.plot.style import finished, line_style, new_figure, point_style, styled, time_unit
-from dembound.results.histories import UNITS, SideHistory, read_side_history
+from dembound.results.histories import UNITS, read_side_history
 from dembound.results.reader import COMPONENTS, is_line, open_record, record_names, require_run
 
 # The axes show at least ± this part of the middle value, so that small differences are not magnified.
@@ -63,24 +63,27 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
         if each.column.any():
             hollow = point_style(index) | {"linestyle": "none", "markerfacecolor": "white"}
             _draw((upper, lower), each.of_column(True), column, f"{name}, free-field column", hollow)
-    along = "y" if side in ("left", "right") else "x"
+    along = f"{'y' if side in ('left', 'right') else 'x'}, along the side (m)"
     upper.set_ylabel("particle diameter (m)")
-    unit = UNITS["velocity"][column]
-    lower.set_ylabel(f"peak |velocity| along {COMPONENTS[column]} ({unit})")
-    lower.set_xlabel(f"{along}, along the side (m)")
+    lower.set(xlabel=along, ylabel=f"peak |velocity| along {COMPONENTS[column]} ({UNITS['velocity'][column]})")
     for panel in (upper, lower):
-        _widen(panel)
-    return finished(
-        figure, f"Particles of the {side} side: diameters, and peaks of their velocity", [lower], 1
-    )  # the labels are long
+        low, high = panel.get_ylim()
+        middle = 0.5 * (low + high)
+        half = max(0.5 * (high - low), LEAST_SPAN * abs(middle))
+        panel.set_ylim(middle - half, middle + half)
+    title = f"Particles of the {side} side: diameters, and peaks of their velocity"
+    return finished(figure, title, [lower], 1)  # the labels are long
 
 
 def _draw(panels: tuple[Axes, Axes], side: Side, column: int, name: str, style: dict[str, Any]) -> None:
     """Diameters of some particles in the upper panel, peaks of a component of their velocity in the lower one."""
     upper, lower = panels
     peaks = side.peaks[:, column]
+    mean, spread = float(peaks.mean()), float(peaks.std())
+    deviation = f"standard deviation {100.0 * spread / mean if mean > 0.0 else 0.0:.2f} %"
+    words = f"{name}: {len(peaks)} particles, mean {mean:.4g} m/s, {deviation}"
     upper.plot(side.along, side.diameters, gid=name, label=name, **style)
-    lower.plot(side.along, peaks, gid=name, label=f"{name}: {_summary(peaks)}", **style)
+    lower.plot(side.along, peaks, gid=name, label=words, **style)
 
 
 def read_side(path: Path, side: str) -> Side:
@@ -96,31 +99,15 @@ def read_side(path: Path, side: str) -> Side:
         if side not in sides:
             there = ", ".join(sides) or "none (the run is not complete, or the scene is periodic)"
             raise CaseError([f"{path}: has no particles of side {side}, sides there: {there}"])
-        group = sides[side]
-        axis = 1 if side in ("left", "right") else 0
+        group, axis = sides[side], 1 if side in ("left", "right") else 0
         peaks = np.abs(group["peak_velocity"][:]).max(axis=2)
         along, column = group["position"][:, axis], group["particle"][:] < file.attrs.get("column", 0)
         order = np.argsort(along, kind="stable")
         return Side(along[order], group["diameter"][:][order], peaks[order], column[order])
 
 
-def _summary(peaks: np.ndarray) -> str:
-    """Number, mean and standard deviation as text."""
-    mean = float(peaks.mean())
-    spread = 100.0 * float(peaks.std()) / mean if mean > 0.0 else 0.0
-    return f"{len(peaks)} particles, mean {mean:.4g} m/s, standard deviation {spread:.2f} %"
-
-
-def _widen(panel: Axes) -> None:
-    """Widen the vertical axis, so that small differences are not magnified."""
-    low, high = panel.get_ylim()
-    middle = 0.5 * (low + high)
-    half = max(0.5 * (high - low), LEAST_SPAN * abs(middle))
-    panel.set_ylim(middle - half, middle + half)
-
-
 LEAST = 1e-6
-"""Share of the other component below which a component is left out."""
+"""Share of the other component, in all runs, below which a component is left out; the first remains if all are zero."""
 
 LINES = {"stress": ("normal, tension positive", "shear, xy"), "displacement": ("along x", "along y")}
 """Names of the components; the second is dashed."""
@@ -150,9 +137,10 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
     figure = new_figure(12.0 if strained else 9.0, 4.5)
     panels = figure.subplots(1, 2 if strained else 1, sharey=True, squeeze=False)[0]
     unit = time_unit(max(float(history.time.max(initial=0.0)) for history in histories))
-    shown = _shown([_values(history, quantity) for history in histories])
-    for index, (name, history) in enumerate(zip(record_names(runs), histories, strict=True)):
-        values = _values(history, quantity)
+    each = [history.stress / 1e6 if quantity == "stress" else history.displacement for history in histories]
+    largest = np.max([np.abs(values).max(axis=0, initial=0.0) for values in each], axis=0)
+    shown = [component for component in range(2) if largest[component] > LEAST * largest.max()] or [0]
+    for index, (name, history, values) in enumerate(zip(record_names(runs), histories, each, strict=True)):
         for component in shown:
             style = line_style(index) | {"linestyle": ("-", "--")[component]}
             label = f"{name}, {LINES[quantity][component]}"
@@ -165,14 +153,3 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
     if strained:
         panels[1].set_xlabel("strain to the opposite side, extension positive (%)")
     return finished(figure, f"{quantity.capitalize()} of the {side} side", [panels[0]], 2)
-
-
-def _values(history: SideHistory, quantity: str) -> np.ndarray:
-    """(k, 2) of a quantity in the unit shown."""
-    return history.stress / 1e6 if quantity == "stress" else history.displacement
-
-
-def _shown(values: Sequence[np.ndarray]) -> list[int]:
-    """The components that are not negligible in all runs; the first if all are zero."""
-    largest = np.max([np.abs(each).max(axis=0, initial=0.0) for each in values], axis=0)
-    return [component for component in range(2) if largest[component] > LEAST * largest.max()] or [0]

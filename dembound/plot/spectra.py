@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator
 
 from dembound.errors import CaseError
 from dembound.plot.histories import (
@@ -24,7 +24,7 @@ from dembound.plot.histories import (
     title_monitors,
     twin_of,
 )
-from dembound.plot.style import REFERENCE, finished, line_style, new_figure, styled
+from dembound.plot.style import REFERENCE, finished, line_style, new_figure, plain_numbers, styled
 from dembound.results.histories import UNITS, MonitorRecord, Quantity, read_histories
 from dembound.results.reader import record_names
 from dembound.spectra import (
@@ -74,7 +74,7 @@ class Curve(NamedTuple):
 
 
 CurveOf = Callable[[Histories, str, int], Curve | None]
-"""The line of a run's histories for a monitor and a column; None if the run has none."""
+"""The line of a run's histories for a monitor that it has and a column; None if there is none."""
 
 
 def fourier_curve(values: np.ndarray, time_step: float) -> Curve:
@@ -106,9 +106,7 @@ def plot_fourier(
     Twins in a free-field column are dashed. Parameters and errors as of `plot_histories`.
     """
 
-    def curve(run: Histories, name: str, column: int) -> Curve | None:
-        if name not in run:
-            return None
+    def curve(run: Histories, name: str, column: int) -> Curve:
         return fourier_curve(run[name].values[:, column], _time_step(name, run[name]))
 
     return _figure(
@@ -151,7 +149,7 @@ def plot_transfer(
 
     def curve(run: Histories, name: str, column: int) -> Curve | None:
         source = twin_of(name) if reference is None else reference
-        if name not in run or source not in run:
+        if source not in run:
             return None
         output, given = run[name], run[source]
         found = transfer_function(output.values[:, column], given.values[:, column], _time_step(name, output))
@@ -180,9 +178,7 @@ def plot_response(
         raise CaseError(["--component: is rotation; a response spectrum is of x or y"])
     begins = []
 
-    def curve(run: Histories, name: str, column: int) -> Curve | None:
-        if name not in run:
-            return None
+    def curve(run: Histories, name: str, column: int) -> Curve:
         step = _time_step(name, run[name])
         found = response_curve(slope(run[name].values[:, column], step), step, SAMPLES_PER_PERIOD)
         begins.append(found.along[0])
@@ -239,10 +235,11 @@ def _draw(
     panel: Axes, curve: CurveOf, run: Histories, name: str, column: int, label: str, style: dict[str, Any]
 ) -> None:
     """Draw a monitor's smoothed spectrum in one run, if it has it, over a thin unsmoothed one; its twin's dashed."""
-    if (twin := curve(run, twin_of(name), column)) is not None:
+    twin = twin_of(name)
+    if twin in run and (line := curve(run, twin, column)) is not None:
         behind = {"color": style["color"], **BEHIND}
-        panel.plot(twin.along, twin.values, label=f"{label}, free field", gid=twin_of(name), **behind)
-    if (line := curve(run, name, column)) is not None:
+        panel.plot(line.along, line.values, label=f"{label}, free field", gid=twin, **behind)
+    if name in run and (line := curve(run, name, column)) is not None:
         draw_curve(panel, line, name, label, style)
 
 
@@ -286,11 +283,9 @@ def on_logarithmic_axes(panels: np.ndarray) -> None:
     crests = [np.nanmax(each, initial=0.0) for line in lines if len(each := np.asarray(line.get_ydata())) > 0]
     values = np.append(values, max(crests))
     for panel in panels.flat:
-        panel.set_xscale("log")
-        panel.set_yscale("log")
+        panel.set(xscale="log", yscale="log")
         for axis in (panel.xaxis, panel.yaxis):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+            plain_numbers(axis)
         if values.max() < FEW_DECADES * values.min():
             panel.yaxis.set_major_locator(LogLocator(subs=NUMBERED))
         if np.divide(*panel.get_xlim()[::-1]) < FEW_DECADES:

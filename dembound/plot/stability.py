@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -22,16 +22,6 @@ from dembound.results.reader import open_record, record_names, text_of
 from dembound.results.structure import Members
 
 
-@dataclass(frozen=True)
-class Passes:
-    """A calibration: factors beta (p,) and peaks outgoing (p,) m/s of its passes, incident peak m/s, its task."""
-
-    beta: np.ndarray
-    outgoing: np.ndarray
-    incident: float
-    asked: str
-
-
 @styled
 def plot_convergence(records: Sequence[Path]) -> Figure:
     """Peak M_out at the side, with the incident M_in (upper panel), and factor β (lower panel) against the pass.
@@ -43,39 +33,30 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
 
     Raises CaseError when a file cannot be read or none of them has a pass.
     """
-    calibrations = [read_passes(path) for path in records]
-    if not any(len(each.beta) for each in calibrations):
+    calibrations = [_read_passes(path) for path in records]
+    if not any(len(beta) for beta, *_ in calibrations):
         raise CaseError([f"{', '.join(map(str, records))}: has no passes to show"])
     figure = new_figure(8.0, 6.5)
     upper, lower = figure.subplots(2, 1, sharex=True)
-    for index, (name, each) in enumerate(zip(record_names(records), calibrations, strict=True)):
-        passes = np.arange(1, len(each.beta) + 1)
-        style = open_point_style(index)
-        upper.plot(passes, each.outgoing, label=f"{name}, {each.asked}", gid=name, **style)
-        lower.plot(passes, each.beta, gid=name, label=name, **style)
-    for incident in sorted({each.incident for each in calibrations}):
+    for index, (name, (beta, outgoing, _, asked)) in enumerate(zip(record_names(records), calibrations, strict=True)):
+        passes, style = np.arange(1, len(beta) + 1), open_point_style(index)
+        upper.plot(passes, outgoing, label=f"{name}, {asked}", gid=name, **style)
+        lower.plot(passes, beta, gid=name, label=name, **style)
+    for incident in sorted({incident for _, _, incident, _ in calibrations}):
         label = f"incident peak, {incident:.4g} m/s"
         upper.axhline(incident, color=REFERENCE, linewidth=1.0, zorder=1, label=label)
     upper.set_ylabel("peak velocity at the side (m/s)")
-    lower.set_ylabel("boundary factor β (–)")
-    lower.set_xlabel("pass")
+    lower.set(xlabel="pass", ylabel="boundary factor β (–)")
     lower.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     return finished(figure, "Calibration: β is right when the side moves as the incident wave does", [upper], 2)
 
 
-def read_passes(path: Path) -> Passes:
-    """The passes of a calibration.
-
-    Raises CaseError when the file cannot be read.
-    """
+def _read_passes(path: Path) -> tuple[np.ndarray, np.ndarray, float, str]:
+    """Factors β (p,) and outgoing peaks (p,) m/s of a calibration's passes, the incident peak (m/s), and its task."""
     with open_record(path) as file:
-        asked = {name: text_of(file.attrs[name]) for name in ("boundary", "kind", "wave", "method")}
-        return Passes(
-            beta=file["beta"][:],
-            outgoing=file["outgoing"][:],
-            incident=float(file.attrs["incident"]),
-            asked=f"{asked['boundary']} {asked['kind']} {asked['wave'].upper()}, {asked['method']}",
-        )
+        boundary, kind, wave, method = (text_of(file.attrs[name]) for name in ("boundary", "kind", "wave", "method"))
+        asked = f"{boundary} {kind} {wave.upper()}, {method}"
+        return file["beta"][:], file["outgoing"][:], float(file.attrs["incident"]), asked
 
 
 LEAST, MOST = 1e-20, 1e100
@@ -113,10 +94,8 @@ def plot_stability(short: Sequence[Line], long: Sequence[Line], title: str) -> F
         panel.yaxis.set_minor_formatter(NullFormatter())
         panel.set_xlabel("steps")
         panel.set_xlim(left=0)
-    left.set_ylabel("kinetic energy / that of the noise (–)")
-    left.set_title("around the largest stable step")
-    right.set_ylabel("energy / that of the noise (–)")
-    right.set_title("at the case's own step")
+    left.set(ylabel="kinetic energy / that of the noise (–)", title="around the largest stable step")
+    right.set(ylabel="energy / that of the noise (–)", title="at the case's own step")
     low, high = right.get_ylim()
     right.set_ylim(min(low, 0.1), max(high, 10.0))
     return finished(figure, title, [left, right], 2)
@@ -126,8 +105,7 @@ WIDEST = 0.06
 """Half the width of the members' points of one group, over the distance of two groups."""
 
 
-@dataclass(frozen=True)
-class SweptQuantity:
+class SweptQuantity(NamedTuple):
     """A quantity: values (n,) of the members, nan for those without it, and mean and interval (g,) of each group."""
 
     name: str
@@ -135,16 +113,6 @@ class SweptQuantity:
     values: np.ndarray
     mean: np.ndarray
     interval: np.ndarray
-
-
-@dataclass(frozen=True)
-class SweptContent:
-    """Contents of the picture: the number of the group of every member (n,), the groups, and the panels."""
-
-    title: str
-    member_group: np.ndarray
-    groups: list[dict[str, Any]]
-    panels: list[SweptQuantity]
 
 
 @styled
@@ -160,47 +128,43 @@ def plot_sweep(path: Path) -> Figure:
 
     Raises CaseError when the file cannot be read.
     """
-    content = read_content(path)
-    count = len(content.panels)
-    columns = min(count, 2)
-    figure = new_figure(5.2 * columns + 1.0, 3.4 * math.ceil(count / columns) + 0.9)
-    places, label = _places(content.groups)
-    axes = figure.subplots(math.ceil(count / columns), columns, squeeze=False).ravel()
-    for panel, each in zip(axes, content.panels, strict=False):
-        _draw_swept(panel, each, content, places)
-        panel.set_ylabel(f"{each.name} ({'–' if each.unit == '1' else each.unit})")
-        panel.set_xlabel(label)
-        if not _is_by_value(content.groups):
-            panel.xaxis.set_major_locator(FixedLocator(places.tolist()))
-            panel.xaxis.set_major_formatter(FixedFormatter([_in_words(group) for group in content.groups]))
-            panel.set_xlim(-0.7, len(places) - 0.3)
-    for panel in axes[count:]:
-        panel.set_axis_off()
-    return finished(figure, content.title, axes, 3)
-
-
-def read_content(path: Path) -> SweptContent:
-    """The contents of a picture; errors as `plot_sweep`."""
     with open_record(path) as file:
-        texts = [text_of(each) for each in file["members/group"][:]]
-        names = list(dict.fromkeys(texts))
-        return SweptContent(
-            title=text_of(file.attrs["title"]).strip("\0") or text_of(file.attrs["name"]),
-            member_group=np.array([names.index(each) for each in texts]),
-            groups=[json.loads(each) for each in names],
-            panels=[_read_panel(file, name, names) for name in json.loads(file.attrs["shown"])],
-        )
+        title = text_of(file.attrs["title"]).strip("\0") or text_of(file.attrs["name"])
+        of_members = [text_of(each) for each in file["members/group"][:]]
+        names = list(dict.fromkeys(of_members))
+        shown = [_read_swept(file, name, names) for name in json.loads(file.attrs["shown"])]
+    groups, by_number = [json.loads(each) for each in names], [names.index(each) for each in of_members]
+    columns = min(len(shown), 2)
+    rows = math.ceil(len(shown) / columns)
+    figure = new_figure(5.2 * columns + 1.0, 3.4 * rows + 0.9)
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    keys = list(dict.fromkeys(key for group in groups for key in group))
+    is_by_value = _is_by_value(groups)
+    places = np.array([group[keys[0]] for group in groups] if is_by_value else range(len(groups)), dtype=float)
+    for panel, each in zip(axes, shown, strict=False):
+        _draw_swept(panel, each, np.array(by_number), places)
+        panel.set(xlabel=", ".join(keys), ylabel=f"{each.name} ({'–' if each.unit == '1' else each.unit})")
+        if is_by_value:
+            order = np.argsort(places)
+            panel.plot(places[order], each.mean[order], "-", color=REFERENCE, linewidth=0.9, zorder=1)
+        else:
+            panel.xaxis.set_major_locator(FixedLocator(places.tolist()))
+            panel.xaxis.set_major_formatter(FixedFormatter([_in_words(group) for group in groups]))
+            panel.set_xlim(-0.7, len(places) - 0.3)
+    for panel in axes[len(shown) :]:
+        panel.set_axis_off()
+    return finished(figure, title, axes, 3)
 
 
-def _read_panel(file: h5py.File, name: str, groups: list[str]) -> SweptQuantity:
+def _read_swept(file: h5py.File, name: str, groups: Sequence[str]) -> SweptQuantity:
     """A quantity of an open record."""
-    statistics = Members(file, "statistics")[name]
+    statistics, values = Members(file, "statistics")[name], file["values"][name]
     rows = {text_of(each): row for row, each in enumerate(statistics["group"][:])}
-    columns = {
-        column: np.array([statistics[column][rows[group]] if group in rows else np.nan for group in groups])
+    mean, interval = (
+        np.array([statistics[column][rows[group]] if group in rows else np.nan for group in groups])
         for column in ("mean", "interval")
-    }
-    return SweptQuantity(name, text_of(file["values"][name].attrs["unit"]), file["values"][name][:], **columns)
+    )
+    return SweptQuantity(name, text_of(values.attrs["unit"]), values[:], mean, interval)
 
 
 def _is_by_value(groups: Sequence[dict[str, Any]]) -> bool:
@@ -210,39 +174,24 @@ def _is_by_value(groups: Sequence[dict[str, Any]]) -> bool:
     return len(groups) > 1 and all(len(group) == 1 for group in groups) and numbers
 
 
-def _places(groups: Sequence[dict[str, Any]]) -> tuple[np.ndarray, str]:
-    """Positions (g,) of the groups along the horizontal axis, and its label."""
-    keys = list(dict.fromkeys(key for group in groups for key in group))
-    if _is_by_value(groups):
-        return np.array([group[keys[0]] for group in groups], dtype=float), keys[0]
-    return np.arange(float(len(groups))), ", ".join(keys)
-
-
 def _in_words(group: dict[str, Any]) -> str:
     """The values of a group, one in a line; empty without keys."""
     return "\n".join(value if isinstance(value, str) else json.dumps(value) for value in group.values())
 
 
-def _draw_swept(panel: Axes, each: SweptQuantity, content: SweptContent, places: np.ndarray) -> None:
-    """Draw the members of every group in their order, side by side, and beside them mean and interval."""
+def _draw_swept(panel: Axes, each: SweptQuantity, groups: np.ndarray, places: np.ndarray) -> None:
+    """Draw the members of every group in their order, side by side, and beside them mean and interval.
+
+    groups (n,) : number of that of each member; places (g,) : of the groups along the horizontal axis.
+    """
     distance = float(np.diff(np.unique(places)).min()) if len(places) > 1 else 1.0
     for number, place in enumerate(places):
-        inside = np.flatnonzero(content.member_group == number)
+        inside = np.flatnonzero(groups == number)
         across = WIDEST * distance * np.linspace(-1.0, 1.0, len(inside)) if len(inside) > 1 else np.zeros(1)
         label = "members, side by side" if number == 0 else None
         panel.plot(place + across, each.values[inside], "o", color=COLOURS[4], markersize=4.0, label=label)
-    has_interval = np.isfinite(each.interval)
-    if has_interval.any():
-        panel.errorbar(
-            places[has_interval],
-            each.mean[has_interval],
-            each.interval[has_interval],
-            fmt="s",
-            color=COLOURS[1],
-            capsize=6.0,
-            zorder=3,
-            label="mean over seeds with 95 % interval",
-        )
-    if _is_by_value(content.groups):
-        order = np.argsort(places)
-        panel.plot(places[order], each.mean[order], "-", color=REFERENCE, linewidth=0.9, zorder=1)
+    known = np.isfinite(each.interval)
+    if known.any():
+        looks: dict[str, Any] = {"fmt": "s", "color": COLOURS[1], "capsize": 6.0, "zorder": 3}
+        label = "mean over seeds with 95 % interval"
+        panel.errorbar(places[known], each.mean[known], each.interval[known], label=label, **looks)

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import style
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
@@ -16,7 +17,7 @@ from matplotlib.font_manager import get_font_names
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.path import Path as Path2D
-from matplotlib.ticker import AutoLocator, LogLocator, ScalarFormatter
+from matplotlib.ticker import AutoLocator, LogLocator, NullFormatter, ScalarFormatter
 
 from dembound.files import replacing
 from dembound.interrupts import look
@@ -140,6 +141,12 @@ class Powers(ScalarFormatter):
         """The power of ten; empty if there is none."""
         power = super().get_offset().removeprefix("1e")
         return power and f"×10{power.translate(RAISED)}"
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Give a logarithmic axis numbers such as 0.05 at its ticks, and none between them."""
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def decade(value: float, _: object = None) -> str:

@@ -35,7 +35,7 @@ def columns_of(figure: Figure) -> Iterator[Column]:
     The heads of lines that are drawn against two quantities name the quantity.
     """
     groups: list[tuple[np.ndarray, list[tuple[Axes, Line2D]]]] = []
-    for panel, line in _lines(figure):
+    for panel, line in ((each, line) for each in figure.axes for line in named_lines(each)):
         along = np.asarray(line.get_xdata(), dtype=float)
         for known, lines in groups:
             if np.array_equal(known, along):
@@ -70,10 +70,9 @@ def _name_and_run(line: Line2D) -> tuple[str, str]:
     return name, "" if label.startswith(name) else label
 
 
-def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
-    """All lines that have a name, and the panels they are in."""
-    for panel in figure.axes:
-        yield from ((panel, line) for line in panel.lines if line.get_gid() is not None)
+def named_lines(panel: Axes) -> list[Line2D]:
+    """The lines of a panel that have a name."""
+    return [line for line in panel.lines if line.get_gid() is not None]
 
 
 def _head(figure: Figure, panel: Axes, line: Line2D) -> str:

@@ -109,10 +109,8 @@ def processed(channel: Channel, settings: Processing) -> Motion:
     values, pad, words = filtered(values, step, settings.filters)
     steps += words
     acceleration, velocity = (each[pad : pad + count] for each in _motions(values, step, channel.quantity))
-    if channel.quantity == "acceleration":
-        steps.append("integration: velocity in the frequency domain")
-    else:
-        steps.append(f"differentiation: acceleration of the {channel.quantity} in the frequency domain")
+    derived = "integration: velocity", f"differentiation: acceleration of the {channel.quantity}"
+    steps.append(f"{derived[channel.quantity != 'acceleration']} in the frequency domain")
     if settings.taper > 0.0:
         acceleration, velocity = weights * acceleration + slopes * velocity, weights * velocity
         steps.append(f"taper: cosine of {settings.taper:g} s at both ends of the velocity")
@@ -126,9 +124,8 @@ def windowed(channel: Channel, begin: float | None, end: float | None) -> Channe
     """The samples of a channel from one time to another, s. Raises CaseError if these are fewer than two."""
     time = channel.begin + channel.time_step * np.arange(len(channel.values))
     half = 0.5 * channel.time_step  # times are not exact
-    inside = (time > (begin if begin is not None else time[0]) - half) & (
-        time < (end if end is not None else time[-1]) + half
-    )
+    first, last = time[0] if begin is None else begin, time[-1] if end is None else end
+    inside = (time > first - half) & (time < last + half)
     if np.count_nonzero(inside) < 2:
         raise CaseError([f"--from, --to: keep no samples; the record is from {time[0]:g} to {time[-1]:g} s"])
     return replace(channel, values=channel.values[inside], begin=float(time[inside][0]))
@@ -173,9 +170,8 @@ def without_final_velocity(
     It begins with the first motion of their whole channel.
     """
     if channel.quantity != "acceleration":
-        raise CaseError(
-            [f"--baseline: zero-velocity is for accelerations, {channel.component} is a {channel.quantity}"]
-        )
+        own = f"{channel.component} is a {channel.quantity}"
+        raise CaseError([f"--baseline: zero-velocity is for accelerations, {own}"])
     step = channel.time_step
     before = max(0, first_motion(channel.values) - round((time[0] - channel.begin) / step))
     shape = np.where(np.arange(len(values)) < before, 0.0, weights)
@@ -191,9 +187,8 @@ def tapers(count: int, step: float, length: float) -> tuple[np.ndarray, np.ndarr
     Raises CaseError for tapers that overlap.
     """
     if not 0.0 <= length <= 0.5 * step * (count - 1):
-        raise CaseError(
-            [f"--taper: is {length:g} s, must be from 0 to half of the record, {0.5 * step * (count - 1):g} s"]
-        )
+        half = f"half of the record, {0.5 * step * (count - 1):g} s"
+        raise CaseError([f"--taper: is {length:g} s, must be from 0 to {half}"])
     if length == 0.0:
         return np.ones(count), np.zeros(count)
     time = step * np.arange(count)

@@ -20,9 +20,8 @@ from dembound.plot.energy import plot_energy
 from dembound.plot.field_reader import evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
 from dembound.plot.record import plot_spectra
-from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
-from dembound.report.tables import ReportedRun, read_runs
+from dembound.report.tables import TABLES, ReportedRun, read_runs
 from dembound.results.histories import read_histories
 from dembound.results.reader import reading, snapshots_of, understood
 from dembound.version import __version__
@@ -30,7 +29,6 @@ from dembound.version import __version__
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
-    from matplotlib.figure import Figure
 
 MOST_FRAMES = 40
 """Largest number of frames of a scene; more snapshots are thinned evenly."""
@@ -40,19 +38,6 @@ FRAME_DOTS = 105
 
 VISIBLE = 0.01
 """Share of the largest velocity above which the other component has its own picture."""
-
-TABLES = (
-    tables.overview,
-    tables.changed_keys,
-    tables.layers,
-    tables.monitors,
-    tables.sides,
-    tables.energies,
-    tables.error_estimate,
-    tables.time_split,
-    tables.versions,
-)
-"""The tables of the page; the template uses the names of their functions."""
 
 
 @dataclass(frozen=True)
@@ -102,10 +87,13 @@ def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None]
 
 
 def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
-    """The text of the page."""
+    """The text of the page; raises RecordError for a summary of another origin."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    made = _tables(runs)
+    for run in runs:
+        with understood(run.record):  # of which run a foreign summary is
+            _ = [table([run]) for table in TABLES.values()]
+    made = {name: table(runs) for name, table in TABLES.items()}
     missing: list[str] = []
 
     def attempt(draw: Callable[[], Any]) -> Any:
@@ -142,7 +130,10 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
     inline = {name: _source(environment, file) for name, file in (("style", "page.css"), ("script", "page.js"))}
     return environment.get_template("page.html").render(
         inline=inline,
-        hashes={name: _hash(text) for name, text in inline.items()},
+        # in base64: the policy of the page allows only this style sheet and this script
+        hashes={
+            name: base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for name, text in inline.items()
+        },
         title=", ".join(run.name for run in runs),
         version=__version__,
         runs=shown,
@@ -160,11 +151,6 @@ def _source(environment: Environment, name: str) -> Markup:
     loader = environment.loader
     assert loader is not None
     return Markup("\n".join(loader.get_source(environment, name)[0].splitlines()))
-
-
-def _hash(text: str) -> str:
-    """The SHA-256 of an inline style sheet or script in base64; the page's policy allows only these."""
-    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
 def _shown_text(value: Any) -> Any:
@@ -214,13 +200,8 @@ def _charts(runs: Sequence[ReportedRun], attempt: Callable[[Callable[[], Any]], 
         draws.append(partial(plot_histories, records, quantity="stress"))
     draws += [partial(plot_spectra, records, component) for component in components]
     for draw in draws:
-        if picture := attempt(partial(_drawn, draw)):
-            yield picture
-
-
-def _drawn(draw: Callable[[], Figure]) -> Picture:
-    """The picture that a function draws."""
-    return picture_of(draw())
+        if figure := attempt(draw):
+            yield picture_of(figure)
 
 
 def _components(records: Sequence[Path]) -> list[Any]:
@@ -229,19 +210,10 @@ def _components(records: Sequence[Path]) -> list[Any]:
     if not any(histories):
         raise CaseError([f"{', '.join(map(str, records))}: has no monitors to show"])
     largest = largest_values(histories)
+    is_visible = largest >= VISIBLE * largest.max()
     return [
-        name
-        for name, each in zip("xy", largest, strict=True)
-        if each >= VISIBLE * largest.max() and (each or name == "x")
+        name for name, each, shown in zip("xy", largest, is_visible, strict=True) if shown and (each or name == "x")
     ]
-
-
-def _tables(runs: Sequence[ReportedRun]) -> dict[str, tables.Table | None]:
-    """All tables of the page by the names of their functions. Raises RecordError for a summary of another origin."""
-    for run in runs:
-        with understood(run.record):  # of which run a foreign summary is
-            _ = [table([run]) for table in TABLES]
-    return {table.__name__: table(runs) for table in TABLES}
 
 
 def _packed(values: dict[str, Any]) -> str:

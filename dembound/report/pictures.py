@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,11 +23,10 @@ from dembound.kinds import kind_of_record
 from dembound.motion.kind import MovingPicture
 from dembound.plot.moving import TimeLine
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP, pixels_of, styled
-from dembound.plot.table import x_label
+from dembound.plot.table import named_lines, x_label
 from dembound.results.histories import monitor_names
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from PIL.Image import Image
@@ -60,9 +59,8 @@ def picture_of(figure: Figure) -> Picture:
     pixels = pixels_of(figure)
     title = figure.get_suptitle()
     chart = chart_of(figure)
-    peaks = (
-        [] if chart is None else [_peak_in_words(panel, line) for panel in chart["panels"] for line in panel["lines"]]
-    )
+    panels = [] if chart is None else chart["panels"]
+    peaks = [_peak_in_words(panel, line) for panel in panels for line in panel["lines"]]
     words = "; ".join([title.replace("\n", ", "), *peaks])
     height, width, _ = pixels.shape
     return Picture(title, words, uri_of(pixels, lossless=True), width, height, chart)
@@ -70,10 +68,8 @@ def picture_of(figure: Figure) -> Picture:
 
 def uri_of(pixels: np.ndarray, *, lossless: bool) -> str:
     """A picture (rows, columns, 3) of red, green and blue from 0 to 255 as a data URI."""
-    from PIL import Image
-
     file = io.BytesIO()
-    Image.fromarray(pixels).save(file, "webp", lossless=lossless, quality=FRAME_QUALITY, method=4)
+    _picture(pixels).save(file, "webp", lossless=lossless, quality=FRAME_QUALITY, method=4)
     return f"data:image/webp;base64,{base64.b64encode(file.getvalue()).decode()}"
 
 
@@ -82,7 +78,7 @@ def chart_of(figure: Figure) -> dict[str, Any] | None:
 
     It has a panel for each of the figure's axes with lines; lines end at the ends of the x axis.
     """
-    panels = [panel for panel in figure.axes if _named(panel)]
+    panels = [panel for panel in figure.axes if named_lines(panel)]
     if not panels:
         return None
     shared = panels[0].get_shared_y_axes()
@@ -95,16 +91,11 @@ def chart_of(figure: Figure) -> dict[str, Any] | None:
                 "title": panel.get_title("left") or panel.get_title(),
                 "y": panel.get_ylabel() or figure.get_supylabel(),
                 "range": [float(end) for end in panel.get_xlim()],
-                "lines": [_line(each, panel.get_xlim()) for each in _named(panel)],
+                "lines": [_line(each, panel.get_xlim()) for each in named_lines(panel)],
             }
             for panel in panels
         ],
     }
-
-
-def _named(panel: Axes) -> list[Line2D]:
-    """The lines of a panel that have a name."""
-    return [line for line in panel.lines if line.get_gid() is not None]
 
 
 def _line(line: Line2D, ends: tuple[float, float]) -> dict[str, Any]:
@@ -237,14 +228,8 @@ def movie_of(
     if count < 2:
         raise CaseError([f"{record}: has only one snapshot, a movie needs two; run with output.snapshots above 1"])
     chosen = sorted({*range(0, count, every), count - 1})
-    return Movie(picture, _below(record, picture.width, monitors), chosen, pixels)
-
-
-def _below(record: Path, width: float, monitors: Sequence[str] | None) -> TimeLine | None:
-    """The histories below the scene."""
-    if monitors is None:
-        monitors = monitor_names(record)
-    return TimeLine(record, width, monitors) if monitors else None
+    shown = monitor_names(record) if monitors is None else monitors
+    return Movie(picture, TimeLine(record, picture.width, shown) if shown else None, chosen, pixels)
 
 
 def write_movie(
@@ -263,6 +248,8 @@ def write_movie(
 
     Raises CaseError for another ending, or a folder that is there.
     """
+    from PIL.Image import Dither
+
     require_movie(path)
 
     def frames() -> Iterator[np.ndarray]:
@@ -273,7 +260,10 @@ def write_movie(
     if path.suffix:
         colours = _common_colours(movie)
         with replacing(path) as file:
-            _write_gif((_reduced(frame, colours) for frame in frames()), file, fps)
+            reduced = (_picture(frame).quantize(palette=colours, dither=Dither.NONE) for frame in frames())
+            duration = 10 * max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
+            looks = {"save_all": True, "append_images": reduced, "duration": duration, "loop": 0, "optimize": False}
+            next(reduced).save(file, "gif", **looks)
         return
     with new_folder(path) as folder:
         for number, frame in enumerate(frames()):
@@ -320,18 +310,3 @@ def _shades(found: np.ndarray) -> np.ndarray:
         if np.mean(away <= ROUNDING) > 0.5:
             return shades
     return np.zeros((0, 3), dtype=int)
-
-
-def _reduced(frame: np.ndarray, colours: Image) -> Image:
-    """A frame in the colours of a palette."""
-    from PIL.Image import Dither
-
-    return _picture(frame).quantize(palette=colours, dither=Dither.NONE)
-
-
-def _write_gif(pictures: Iterator[Image], file: BinaryIO, fps: float) -> None:
-    """Write an animated picture that repeats."""
-    first = next(pictures)
-    duration = 10 * max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
-    looks = {"save_all": True, "append_images": pictures, "duration": duration, "loop": 0, "optimize": False}
-    first.save(file, "gif", **looks)

@@ -46,13 +46,8 @@ def side_by_side(
     return Table(title, ["", *(run.name for run in runs)], rows) if rows else None
 
 
-def overview(runs: Sequence[ReportedRun]) -> Table | None:
-    """Table of the runs: case, contents, and how each run ended."""
-    return side_by_side("Runs", runs, _overview)
-
-
 def _overview(run: ReportedRun) -> Entries:
-    """Entries of a run."""
+    """Body, duration and law of a run, and how it ended."""
     attributes, summary = run.results.attributes, run.summary
     if run.has_histories_alone:
         library = attributes.get("superposed")
@@ -86,12 +81,6 @@ def _contents(run: ReportedRun) -> Iterator[str]:
     with open_record(run.record) as file:
         if GROUP in file:
             yield f"a continuum of {len(file[f'{GROUP}/position']):,} nodes"
-
-
-def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
-    """The keys of the cases in which the runs differ; None for one run or without differences."""
-    title = "Keys of the cases that differ"
-    return side_by_side(title, runs, lambda run: _flat(run.summary.get("keys", {})), different=True)
 
 
 def _flat(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
@@ -182,13 +171,8 @@ def _each(side: Mapping[str, Any], key: str) -> str:
     return ", ".join(dict.fromkeys(f"{each[key]:.5g}" for each in side.get("layers", [side])))
 
 
-def energies(runs: Sequence[ReportedRun]) -> Table | None:
-    """The last entries of the energy ledgers; None without summaries."""
-    return side_by_side("Energy at the end", runs, _energies)
-
-
 def _energies(run: ReportedRun) -> Entries:
-    """Entries of a run."""
+    """The last entries of a run's energy ledger; none without a summary."""
     ledger = run.summary.get("energy")
     if ledger is None:
         return
@@ -207,13 +191,8 @@ def _joules(energy: float, run: ReportedRun) -> str:
     return f"{energy / 10.0**power:.4g} {PREFIXES[power]}{'J' if run.is_bar else 'J/m'}"
 
 
-def time_split(runs: Sequence[ReportedRun]) -> Table | None:
-    """Seconds by part of each run, rate and RAM; None without summaries."""
-    return side_by_side("Where the time went", runs, _time)
-
-
 def _time(run: ReportedRun) -> Entries:
-    """Entries of a run."""
+    """Seconds by part of a run, rate and RAM; none without a summary."""
     summary = run.summary
     if not summary:
         return
@@ -224,11 +203,6 @@ def _time(run: ReportedRun) -> Entries:
     yield "memory", f"{summary['memory_bytes'] / 1e6:.0f} MB"
 
 
-def versions(runs: Sequence[ReportedRun]) -> Table | None:
-    """The version and the seed of each run, and from where it was resumed."""
-    return side_by_side("Versions", runs, _version)
-
-
 def _version(run: ReportedRun) -> Entries:
     """Version, seed and resumptions of a run."""
     yield "dembound", str(run.results.attributes.get("version", NONE))
@@ -237,15 +211,22 @@ def _version(run: ReportedRun) -> Entries:
         yield "resumed", ", ".join(resumed)
 
 
-def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
-    """Estimated errors, RMS over RMS, of the runs that have them; None without any."""
-    return side_by_side("Estimated errors", runs, _estimated)
-
-
-def _estimated(run: ReportedRun) -> Entries:
-    """Estimated errors of one run."""
-    if KEY in run.summary:
-        yield from entries(run.summary[KEY])
+TABLES: dict[str, Callable[[Sequence[ReportedRun]], Table | None]] = {
+    "overview": lambda runs: side_by_side("Runs", runs, _overview),
+    "changed_keys": lambda runs: side_by_side(
+        "Keys of the cases that differ", runs, lambda run: _flat(run.summary.get("keys", {})), different=True
+    ),
+    "layers": layers,
+    "monitors": monitors,
+    "sides": sides,
+    "energies": lambda runs: side_by_side("Energy at the end", runs, _energies),
+    "error_estimate": lambda runs: side_by_side(
+        "Estimated errors", runs, lambda run: entries(run.summary[KEY]) if KEY in run.summary else iter(())
+    ),
+    "time_split": lambda runs: side_by_side("Where the time went", runs, _time),
+    "versions": lambda runs: side_by_side("Versions", runs, _version),
+}
+"""The tables of a page by their names in its template; None for one without rows."""
 
 
 @dataclass(frozen=True)
@@ -290,14 +271,10 @@ def read_runs(records: Sequence[Path]) -> list[ReportedRun]:
         raise failure([line for error in errors for line in str(error).splitlines()])
     kinds = sorted({kind.plural for _, kind, _, _ in found})
     if len(kinds) > 1:
-        raise CaseError(
-            [f"RESULTS: holds runs of {' and of '.join(kinds)}, which have no page in common; name one kind"]
-        )
+        holds = f"RESULTS: holds runs of {' and of '.join(kinds)}"
+        raise CaseError([f"{holds}, which have no page in common; name one kind"])
     names = record_names(records)
-    return [
-        ReportedRun(record, name, kind, results, summary)
-        for name, (record, kind, results, summary) in zip(names, found, strict=True)
-    ]
+    return [ReportedRun(each[0], name, *each[1:]) for name, each in zip(names, found, strict=True)]
 
 
 def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:

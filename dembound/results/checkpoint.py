@@ -110,13 +110,7 @@ class Checkpoints(Tracker):
 
 def facts_of(case: Case) -> dict[str, Any]:
     """The facts of any checkpoint of a case."""
-    return {
-        "version": __version__,
-        "name": case.name,
-        "case": case.text,
-        "files": case.files,
-        "keys": case.keys,
-    }
+    return {"version": __version__, "name": case.name, "case": case.text, "files": case.files, "keys": case.keys}
 
 
 def differences(first: Any, second: Any, key: str = "") -> list[str]:
@@ -130,12 +124,8 @@ def differences(first: Any, second: Any, key: str = "") -> list[str]:
         return [line for name, one, two in pairs for line in differences(one, two, name)]
     if first == second:
         return []
-    return [f"{key}: is {_in_words(first)} here, and {_in_words(second)} there"]
-
-
-def _in_words(value: Any) -> str:
-    """The value of a key in words, also if it is left out."""
-    return "not given" if value is None else json.dumps(value)
+    here, there = ("not given" if value is None else json.dumps(value) for value in (first, second))
+    return [f"{key}: is {here} here, and {there} there"]
 
 
 FOLDER = "settled"
@@ -224,7 +214,6 @@ class KeptStages(Stages):
         """Keep the stage and its checkpoint, with which a run can be resumed before its first step."""
         if self._folder is not None:
             make_folder(self._folder)
-            facts = {"version": __version__, "keys": self._keys}
-            Checkpoint(facts, arrays).write(self._folder / f"{name}.npz")
+            Checkpoint({"version": __version__, "keys": self._keys}, arrays).write(self._folder / f"{name}.npz")
             simulation, checkpoints = self._begun
             checkpoints.write(simulation, durable=False)

@@ -154,9 +154,8 @@ def compare(
                 lines.append(line)
         found += _with_one_twin(lines)
     if not found and is_shared:
-        raise CaseError(
-            [f"{reference}: its {quantity} is zero at the monitors, and over the time, that the runs share"]
-        )
+        still = f"its {quantity} is zero at the monitors, and over the time, that the runs share"
+        raise CaseError([f"{reference}: {still}"])
     if not found:
         raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
     return found

@@ -125,9 +125,8 @@ class Folder:
             raise CaseError([f"{self.name!r}: is not a valid name for results, {problem}; give another --name"])
         for ending in (PARTIAL, REPLACED):
             if self.name.endswith(ending):
-                raise CaseError(
-                    [f"{self.name}: is not a valid name of a case, must not end in {ending}; give another --name"]
-                )
+                said = f"{self.name}: is not a valid name of a case, must not end in {ending}"
+                raise CaseError([f"{said}; give another --name"])
         self.require_own()
         for path in (self.final, self.partial, self._old):
             if path.exists() and not path.is_dir():
@@ -184,9 +183,8 @@ class Folder:
         try:
             lock.acquire(blocking=False)
         except Timeout:
-            raise CaseError(
-                [f"{self.partial}: is being written by another run; wait for its end, or take another name"]
-            ) from None
+            advice = "wait for its end, or take another name"
+            raise CaseError([f"{self.partial}: is being written by another run; {advice}"]) from None
         return lock
 
     def finish(self) -> None:

@@ -103,11 +103,7 @@ HISTORY = (
     ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
     ("velocity", (3,), "f8", VELOCITY_UNIT),
 )
-SIDE_HISTORY = (
-    ("time", (), "f8", "s"),
-    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
-    ("force", (2,), "f8", "N/m"),
-)
+SIDE_HISTORY = (("time", (), "f8", "s"), ("displacement", (3,), "f8", DISPLACEMENT_UNIT), ("force", (2,), "f8", "N/m"))
 LAWS = (("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s"))
 CRACKS = (
     ("time", (), "f8", "s"),
@@ -118,12 +114,7 @@ CRACKS = (
 
 
 def begin_record(
-    file: h5py.File,
-    run: Run,
-    step_limit: float,
-    sides: Collection[str],
-    ledger: Ledger | None,
-    stages: Sequence[Stage],
+    file: h5py.File, run: Run, step_limit: float, sides: Collection[str], ledger: Ledger | None, stages: Sequence[Stage]
 ) -> None:
     """Write all groups of a new file.
 

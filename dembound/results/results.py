@@ -98,19 +98,7 @@ class Arrays(Mapping[str, np.ndarray]):
             raise missing("array", name, self._names, f"{self._record.path}, {self._group}")
 
 
-_PARTS = (
-    "histories",
-    "snapshots",
-    "particles",
-    "boundaries",
-    "walls",
-    "joints",
-    "cracks",
-    "energy",
-    "side_energies",
-    "laws",
-    "summary",
-)
+_PARTS = "histories, snapshots, particles, boundaries, walls, joints, cracks, energy, side_energies, laws, summary"
 """Attributes of `Results` with recorded data."""
 
 
@@ -130,9 +118,8 @@ class _Snapshots(Sequence[Arrays]):
         """A snapshot; raises NumberMissingError, an IndexError, with the range of the existing ones."""
         with self._record.opened() as file:
             found = Snapshots(file, self._names)[number]
-            if isinstance(found, list):
-                return [Arrays(self._record, group.name, group) for group in found]
-            return Arrays(self._record, found.name, found)
+            arrays = [Arrays(self._record, each.name, each) for each in (found if isinstance(found, list) else [found])]
+            return arrays if isinstance(number, slice) else arrays[0]
 
     def __len__(self) -> int:
         return len(self._names)
@@ -183,7 +170,7 @@ class Results:
 
     def __getitem__(self, name: str) -> NoReturn:
         """Raises TypeError with the existing attributes."""
-        raise TypeError(f"results have no [{name!r}]; their parts are attributes: {', '.join(_PARTS)}")
+        raise TypeError(f"results have no [{name!r}]; their parts are attributes: {_PARTS}")
 
     @property
     def name(self) -> str:
@@ -214,10 +201,9 @@ class Results:
     def energy_units(self) -> dict[str, str]:
         """The unit of each column of `energy`; the same errors."""
         with self._record.opened() as file:
-            columns = file.get("energy", {})
+            group = file.get("energy", {})
             return {
-                name: text_of(columns[name].attrs.get("unit", "")) if name in columns else "1"
-                for name in energy_of(file)
+                name: text_of(group[name].attrs.get("unit", "")) if name in group else "1" for name in energy_of(file)
             }
 
     @property

@@ -63,23 +63,13 @@ Shapes = Mapping[str, tuple[int, ...]]
 COLUMNS: Mapping[str, Shapes] = {
     "particles": {
         "position": (2,),
-        "radius": (),
-        "brick_particle": (),
-        "bonds": (),
-        "column": (),
-        "layer": (),
-        "volume": (),
+        **dict.fromkeys(("radius", "brick_particle", "bonds", "column", "layer", "volume"), ()),
     },
     "continuum": {"position": (2,), "absorbs": (), "cell": (4,), "element": (4,), "surface": (4,), "tie": (2,)},
     "histories/[^/]+": {"time": (), "displacement": (3,), "velocity": (3,), "stress": ()},
     "boundaries/[^/]+": {
-        "particle": (),
-        "position": (2,),
-        "diameter": (),
-        "peak_velocity": (3, 2),
-        "time": (),
-        "displacement": (3,),
-        "force": (2,),
+        **dict.fromkeys(("particle", "diameter", "time"), ()),
+        **{"position": (2,), "peak_velocity": (3, 2), "displacement": (3,), "force": (2,)},
     },
     "walls/[^/]+": {"points": (2,), "time": (), "displacement": (2,), "force": (2,)},
     "joints/[^/]+": {

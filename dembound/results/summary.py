@@ -41,6 +41,17 @@ WORTH_SAYING = 1e6
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
     """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent, by part of the run."""
     scene, state = run.scene, run.state
+    with open_record(record) as file:
+        shear, columns = file["cracks/shear"][:], energy_of(file)
+        found = {
+            # including those of the static stage
+            "cracks": {"tension": int(np.count_nonzero(~shear)), "shear": int(np.count_nonzero(shear))},
+            # the last entry of the ledger (J/m), and the largest error of any entry over the supplied energy
+            "energy": {name: float(column[-1]) for name, column in columns.items()}
+            | {"relative_error": float(np.abs(columns["relative_error"]).max())},
+            "sides": _describe_sides(file),
+            "monitors": _describe_monitors(file),
+        }
     return {
         "name": scene.case.name,
         "title": scene.case.title,
@@ -58,10 +69,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "memory_bytes": round(scene.largest_memory),
         "waves": {name: made for name, wave in scene.case.wave.items() if (made := wave.describe())},
         "laws": [{"law": name, "from": step * run.time_step} for name, step in state.laws],
-        "cracks": _count_cracks(record),
-        "energy": _describe_energy(record),
-        "sides": _describe_sides(record),
-        "monitors": _describe_monitors(record),
+        **found,
         "reduced": [*scene.reduced, *run.system.saved(state), *_fields_left_out(planned)],
         "not_reduced": [*planned.refused, *run.system.refused],
     }
@@ -91,29 +99,13 @@ def _fields_left_out(planned: Plan) -> list[str]:
     return [f"fields: no snapshot is kept, {size / 1e6:.3g} MB each"]
 
 
-def _count_cracks(record: Path) -> dict[str, int]:
-    """Bonds that broke, in tension and in shear, including those of the static stage."""
-    with open_record(record) as file:
-        shear = file["cracks/shear"][:]
-    return {"tension": int(np.count_nonzero(~shear)), "shear": int(np.count_nonzero(shear))}
-
-
-def _describe_energy(record: Path) -> dict[str, float]:
-    """Last entry of the ledger (J/m), and the largest error of any entry over the supplied energy."""
-    with open_record(record) as file:
-        columns = energy_of(file)
-    last = {name: float(column[-1]) for name, column in columns.items()}
-    return last | {"relative_error": float(np.abs(columns["relative_error"]).max())}
-
-
-def _describe_sides(record: Path) -> dict[str, Any]:
+def _describe_sides(file: h5py.File) -> dict[str, Any]:
     """Energies of every side at the end of the run; `absorbed_share` is over all that came in through any side.
 
     The total is the sum of the largest energy that came in through each side up to any time, without the energy that a
     continuum takes from the body; null if nothing came in.
     """
-    with open_record(record) as file:
-        sides = side_energies_of(file)
+    sides = side_energies_of(file)
     through = [columns["came_in"] for side, columns in sides.items() if not side.endswith(CONTINUUM)]
     came = sum(max(0.0, float(came_in.max(initial=0.0))) for came_in in through)
     return {
@@ -123,20 +115,18 @@ def _describe_sides(record: Path) -> dict[str, Any]:
     }
 
 
-def _describe_monitors(record: Path) -> dict[str, Any]:
+def _describe_monitors(file: h5py.File) -> dict[str, Any]:
     """Peaks and arrivals of every history, and the motion at the end of the run, after its last sample."""
-    with open_record(record) as file:
-        groups: Mapping[str, h5py.Group] = file.get("histories", {})
-        return {
-            name: {
-                "particle": None if group.attrs["particle"] == NO_PARTICLE else int(group.attrs["particle"]),
-                "position": group.attrs["position"].tolist(),
-                **arrival(group["time"][:], group["velocity"][:, :2]),
-                "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
-                "end": {of: group.attrs[f"end_{of}"].tolist() for of in END if f"end_{of}" in group.attrs},
-            }
-            for name, group in groups.items()
+    return {
+        name: {
+            "particle": None if group.attrs["particle"] == NO_PARTICLE else int(group.attrs["particle"]),
+            "position": group.attrs["position"].tolist(),
+            **arrival(group["time"][:], group["velocity"][:, :2]),
+            "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
+            "end": {of: group.attrs[f"end_{of}"].tolist() for of in END if f"end_{of}" in group.attrs},
         }
+        for name, group in file.get("histories", {}).items()
+    }
 
 
 def arrival(time: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:

@@ -111,9 +111,8 @@ def amplification(path: Path, monitors: Sequence[str] | None = None, reference: 
     Raises CaseError for a file that cannot be read, several rows without a choice, unknown names, a run without free
     fields, and free fields that do not move.
     """
-    velocity, acceleration, displacement = (
-        read_histories(path, quantity) for quantity in ("velocity", "acceleration", "displacement")
-    )
+    velocity, acceleration = read_histories(path, "velocity"), read_histories(path, "acceleration")
+    displacement = read_histories(path, "displacement")
     sides, tops, diameter = _sides(path, velocity)
     if not sides and reference is None:
         raise CaseError(
@@ -133,15 +132,12 @@ def amplification(path: Path, monitors: Sequence[str] | None = None, reference: 
     if still := [name for name in used if not velocity[name].values[:, :2].any()]:
         raise CaseError([f"RESULTS: the free field, {still[0]}, does not move in this run"])
     over_size = _over_size([velocity[name].values for name in used])
-    peaks = {
-        quantity: _peaks(records, names, fields, over_size)
-        for quantity, records in zip(PEAKS, (velocity, acceleration), strict=True)
-    }
+    motions = zip(PEAKS, (velocity, acceleration), strict=True)
+    peaks = {quantity: _peaks(records, names, fields, over_size) for quantity, records in motions}
     frequency, spectra = _spectra(velocity, names, fields, over_size)
     ends = {name: _end(displacement[name]) for name in (*names, *used)}
-    depths = (
-        [] if reference else [tops[side] - _height(velocity[highest[side]]) for side in map(sides.__getitem__, names)]
-    )
+    own = [] if reference else [sides[name] for name in names]
+    depths = [tops[side] - _height(velocity[highest[side]]) for side in own]
     return Amplification(
         names=names,
         places=np.array([velocity[name].position for name in names]),
@@ -226,9 +222,8 @@ def _peaks(
     for name in set(fields):
         motion = records[name].values[:, :2]
         below[name] = np.where(over_size, np.hypot(*motion.T).max(), np.abs(motion).max(axis=0))
-    return np.array(
-        [np.abs(records[name].values[:, :2]).max(axis=0) / below[of] for name, of in zip(names, fields, strict=True)]
-    )
+    sizes = [np.abs(records[name].values[:, :2]).max(axis=0) for name in names]
+    return np.array([size / below[of] for size, of in zip(sizes, fields, strict=True)])
 
 
 def _spectra(

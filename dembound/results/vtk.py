@@ -185,7 +185,8 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
                         series[name] = stack.enter_context(_series(folder, name, files))
                     series[name](number.zfill(digits), time, mesh)
         if len(cracks["time"]) > 0:
-            _write(folder / "cracks.vtu", _cracks(cracks))
+            data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
+            _write(folder / "cracks.vtu", vertices(in_space(cracks["position"]), data))
     write_text(folder / "view.py", kind.view_script)
 
 
@@ -208,12 +209,6 @@ def _series(folder: Path, name: str, files: ParaView) -> Iterator[Callable[[str,
         yield append
     if files != "vtkhdf":
         _write_index(folder / f"{name}.pvd", times)
-
-
-def _cracks(cracks: Arrays) -> meshio.Mesh:
-    """Cracks as vertices with the point data of this module's table."""
-    data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
-    return vertices(in_space(cracks["position"]), data)
 
 
 def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:

@@ -12,6 +12,7 @@ from dembound.boundaries import driven_components
 from dembound.casefile.magnitudes import waves_used
 from dembound.motion.energy import opposed
 from dembound.motion.scene import Scene
+from dembound.results.compare import largest_component
 from dembound.results.reader import energy_of
 from dembound.words import percent
 
@@ -54,7 +55,7 @@ def still_moving(
     """
     braked = _braked(scene, pieces)
     histories = {
-        name: _largest_component(group["velocity"][:, :2])
+        name: (velocity := group["velocity"][:, :2])[:, largest_component(velocity)]
         for name, group in file["histories"].items()
         if name in scene.places and (name in scene.between or braked[scene.monitors[name]])
     }
@@ -179,8 +180,3 @@ def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
     sides = [scene.edges[side] for side, table in tables.items() if table.absorbs]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
     return np.isin(pieces, pieces[ends])
-
-
-def _largest_component(velocity: np.ndarray) -> np.ndarray:
-    """The component (k,) of velocities (k, 2) with the largest value."""
-    return velocity[:, int(np.abs(velocity).max(axis=0).argmax())]

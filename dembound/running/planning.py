@@ -107,25 +107,16 @@ def warnings_before(planned: Plan) -> list[str]:
     """Warnings about probable mistakes, known before the run, one line each; without silent waves."""
     case = planned.scene.case
     silent = tuple(f"wave.{name}:" for name in case.silent if case.wave[name].begin() >= case.run.duration)
-    return [each for each in _all_before(planned) if not each.startswith(silent)]
-
-
-def _all_before(planned: Plan) -> list[str]:
-    """All warnings before the run, including those about silent waves."""
-    return [
-        *unlikely(planned.scene.case),
-        *_unused_waves(planned.scene.case),
+    warnings = [
+        *unlikely(case),
+        # probably their names are misspelt
+        *(f"wave.{name}: no side and no load uses it" for name in case.wave.keys() - waves_used(case)),
         *_same_place(planned.scene),
         *_never_reached(planned),
         *planned.kind.warnings_before(planned.scene, planned.time_step),
         *_interval_warnings(planned),
     ]
-
-
-def _unused_waves(case: Case) -> Iterator[str]:
-    """Waves that no side and no load uses, probably as a name is misspelt."""
-    for name in case.wave.keys() - waves_used(case):
-        yield f"wave.{name}: no side and no load uses it"
+    return [each for each in warnings if not each.startswith(silent)]
 
 
 def _same_place(scene: Scene) -> Iterator[str]:
@@ -144,11 +135,8 @@ def _never_reached(planned: Plan) -> Iterator[str]:
     if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
         return
     first = first_arrivals(sources, planned.kind.front(scene, planned.time_step), monitored(scene))
-    late = {
-        monitor.name: time
-        for monitor, time in zip(scene.case.monitor, first.tolist(), strict=True)
-        if duration <= time < np.inf
-    }
+    times = zip((monitor.name for monitor in scene.case.monitor), first.tolist(), strict=True)
+    late = {name: time for name, time in times if duration <= time < np.inf}
     if late:
         soonest = min(late, key=lambda name: late[name])
         yield (
@@ -179,15 +167,9 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
     The ledger is not yet one of its trackers.
     """
     scene = planned.stepped
-    simulation = Simulation(
-        scene,
-        planned.time_step,
-        scene.probes,
-        system=beginning.system,
-        datum=beginning.datum,
-        clock=clock,
-        side_stride=steps_between_samples(planned),
-    )
+    state: dict[str, Any] = {"system": beginning.system, "datum": beginning.datum}
+    stride = steps_between_samples(planned)
+    simulation = Simulation(scene, planned.time_step, scene.probes, **state, clock=clock, side_stride=stride)
     until = scene.case.run.until
     if until in ("silent", "peak"):
         sources = planned.kind.sources(planned.scene)
@@ -252,17 +234,9 @@ def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
 
 def space_in_words(planned: Plan, results: Path, written: float = 0.0) -> str:
     """The size of the results of a run as text, less the bytes already written, and the free space for them."""
-    size = in_words(sum(bytes_left(planned, written).values()))
-    return f"about {size}{_more(written)} of results{_free(results)}"
-
-
-def _more(written: float) -> str:
-    return " more" if written > 0.0 else ""
-
-
-def _free(results: Path) -> str:
-    free = disk_free(results)
-    return "" if free is None else f"; the disk has {in_words(free)} free"
+    size, free = in_words(sum(bytes_left(planned, written).values())), disk_free(results)
+    there = "" if free is None else f"; the disk has {in_words(free)} free"
+    return f"about {size}{' more' if written > 0.0 else ''} of results{there}"
 
 
 def space_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
@@ -272,6 +246,6 @@ def space_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterat
     if free is not None and need > free:
         key = max(filter(None, sizes), key=lambda name: sizes[name])
         yield (
-            f"{key}: the results take about {in_words(need)}{_more(written)}, "
+            f"{key}: the results take about {in_words(need)}{' more' if written > 0.0 else ''}, "
             f"{in_words(sizes[key])} of them by this key; the disk has {in_words(free)} free"
         )

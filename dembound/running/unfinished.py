@@ -150,9 +150,14 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     reached = facts["step"] * facts["time_step"] if facts["stage"] is None else 0.0
     if until is not None and until <= reached:
         raise CaseError([f"until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
-    if until is not None:
-        case = _lasting(case, until)
-    return Unfinished(replace(case, silent=_silent(path)), results, path, facts)
+    if until is not None:  # without an earlier end
+        data = tomllib.loads(case.text)
+        data["run"] = {key: value for key, value in data["run"].items() if key not in ENDING} | {"duration": until}
+        case = loads(tomli_w.dumps(data), case.folder, case.name, case.files)
+    if (path / "run.h5").is_file():  # the run itself has begun
+        with open_record(path / "run.h5") as record:
+            case = replace(case, silent=silent_of(record))
+    return Unfinished(case, results, path, facts)
 
 
 def left_of(partial: Path, command: str) -> list[str]:
@@ -244,26 +249,10 @@ def _case_of(facts: dict[str, Any], path: Path) -> Case:
     return case if text == facts["case"] else case_of(text, path / "run.h5", facts["name"], facts["files"])
 
 
-def _silent(path: Path) -> frozenset[str]:
-    """Names of the waves that stand for no motion, from the record beside a checkpoint, if the run itself has begun."""
-    if not (path / "run.h5").is_file():
-        return frozenset()
-    with open_record(path / "run.h5") as record:
-        return silent_of(record)
-
-
 def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:
     """The keys of a case without those that determine when its run ends."""
-    run = keys.get("run")
-    lasting = run if isinstance(run, dict) else {}
+    lasting = run if isinstance(run := keys.get("run"), dict) else {}
     return keys | {"run": {key: value for key, value in lasting.items() if key not in (*ENDING, "duration")}}
-
-
-def _lasting(case: Case, until: float) -> Case:
-    """The case with another duration (s), without an earlier end."""
-    data = tomllib.loads(case.text)
-    data["run"] = {key: value for key, value in data["run"].items() if key not in ENDING} | {"duration": until}
-    return loads(tomli_w.dumps(data), case.folder, case.name, case.files)
 
 
 def replaced_in_words(folder: Folder, case: Case) -> Iterator[str]:

@@ -34,10 +34,8 @@ def require_motions(
 ) -> None:
     """Raise Flaw for values over periods, which are never negative, and for another number of channels than stated."""
     about = any(re.search("spectr|谱", text, re.IGNORECASE) for _, text in table.header)
-    if (
-        any(heads[at].name == "T" or (about and heads[at].name in ("", "t")) for at in timed)
-        and (values[chosen] >= 0.0).all()
-    ):
+    may_be = any(heads[at].name == "T" or (about and heads[at].name in ("", "t")) for at in timed)
+    if may_be and (values[chosen] >= 0.0).all():
         at = timed[0] + 1
         raise Flaw(f"column {at} may have periods, as no value is negative: name it by --columns, time if it has times")
     for number, text in table.header if len(chosen) > 1 else ():

@@ -41,18 +41,12 @@ class Cosmos(Format):
 
     def read(self, source: Source) -> Record:
         """The channels of the file."""
-        channels: list[Channel] = []
-        begin = 0
-        while begin < len(source.lines):
-            if source.lines[begin].strip():
-                channel, begin = _channel(source, begin)
-                channels.append(channel)
-            begin += 1
+        channels = source.channels(_channel)
         title = f"{source.line(4)[40:].strip()}, {' '.join(source.line(1).split())}"
-        return Record("COSMOS", title, tuple(channels))
+        return Record("COSMOS", title, channels)
 
 
-def _channel(source: Source, begin: int) -> tuple[Channel, int]:
+def _channel(source: Source, begin: int) -> tuple[list[Channel], int]:
     """The channel that begins at a line, by its index, and the index of the line that ends it."""
     first = FIRST.match(source.lines[begin])
     if first is None:
@@ -84,4 +78,4 @@ def _channel(source: Source, begin: int) -> tuple[Channel, int]:
     step, length = 1e-3 * float(reals[STEP]), samples[2] or ""
     if length and abs(len(values) * step - int(length)) <= 1.0:  # in whole seconds, rounded in any direction
         length = ""
-    return source.channel(name, unit, values, step, peak=peak, length=length), at
+    return [source.channel(name, unit, values, step, peak=peak, length=length)], at

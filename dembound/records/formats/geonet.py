@@ -35,20 +35,14 @@ class Geonet(Format):
 
     def read(self, source: Source) -> Record:
         """The components of the file."""
-        channels: list[Channel] = []
-        begin = 0
-        while begin < len(source.lines):
-            more, begin = _component(source, begin)
-            channels += more
-            while begin < len(source.lines) and not source.lines[begin].strip():
-                begin += 1
+        channels = source.channels(_component)
         volume = "V1A" if source.lines[0].lower().startswith("un") else "V2A"
         title = ", ".join(" ".join(source.line(at).split()) for at in (2, 6))
-        return Record(f"GeoNet {volume}", title, tuple(channels))
+        return Record(f"GeoNet {volume}", title, channels)
 
 
 def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
-    """The quantities of the component that begins at a line, by its index, and the index of the line behind them."""
+    """The quantities of the component that begins at a line, by its index, and the index of their last line."""
     name = source.found(r"^component\s+(\S+)", begin, begin + TEXTS, "the component")[1]
     integers = source.fixed(begin + TEXTS, 10 * INTEGERS, "(10i8)")
     reals = source.fixed(begin + TEXTS + INTEGERS, 10 * REALS, "(10f8.0)")
@@ -74,4 +68,4 @@ def _component(source: Source, begin: int) -> tuple[list[Channel], int]:
             at += rows_of(count, LAYOUT)
     if not found:
         raise Flaw(f"states no samples of component {name}")
-    return found, at
+    return found, at - 1

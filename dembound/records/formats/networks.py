@@ -10,6 +10,7 @@ in the values, and "Max. Acc." in the header is without it.
 
 import re
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
@@ -144,9 +145,8 @@ def value(source: Source, key: str) -> str:
     matches = (re.match(rf"{key}[^:]*:(.*)", line) for line in source.lines[:LONGEST])
     found = list(dict.fromkeys(each[1].strip() for each in matches if each))
     if len(found) > 1:
-        raise Flaw(
-            f'has the line "{key}" twice, with {found[0]} and {found[1]}; remove the wrong one'.replace("\\", "")
-        )
+        twice = f'has the line "{key}" twice, with {found[0]} and {found[1]}; remove the wrong one'
+        raise Flaw(twice.replace("\\", ""))
     return found[0] if found else ""
 
 
@@ -200,12 +200,8 @@ def _begin(lines: Sequence[str]) -> int:
 
 
 HEADER = 17
-KIK_NET = {
-    str(number): f"{direction} ({place})"
-    for number, (place, direction) in enumerate(
-        ((place, direction) for place in ("borehole", "surface") for direction in ("N-S", "E-W", "U-D")), start=1
-    )
-}
+PLACES = product(("borehole", "surface"), ("N-S", "E-W", "U-D"))
+KIK_NET = {str(number): f"{direction} ({place})" for number, (place, direction) in enumerate(PLACES, start=1)}
 """Components by their numbers in files of KiK-net."""
 
 

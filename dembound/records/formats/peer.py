@@ -50,9 +50,8 @@ class Peer(Format):
         source.require_no_factor(enumerate(source.lines[:at], start=1))
         steps = {text for pair in STEPS.findall("\n".join(source.lines[: at + 1])) for text in pair if text}
         if len(set(map(number_of, steps))) > 1:
-            raise Flaw(
-                f"states time steps of {' and '.join(sorted(steps))}; --skip {at + 1} and --dt read what is below"
-            )
+            said = f"states time steps of {' and '.join(sorted(steps))}"
+            raise Flaw(f"{said}; --skip {at + 1} and --dt read what is below")
         named = source.measured(spelled, stated if quantity_named(stated) else " ".join(above))
         component = title.rpartition(",")[2].strip() if "," in title else ""
         values = source.free(at + 1, int(count))

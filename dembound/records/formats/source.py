@@ -2,7 +2,7 @@
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
@@ -95,6 +95,17 @@ class Source:
             raise Flaw(f"ends within the header, at line {len(self.lines)}")
         return self.lines[index]
 
+    def channels(self, read: Callable[["Source", int], tuple[list[Channel], int]]) -> tuple[Channel, ...]:
+        """All channels of a file; read : gives those that begin at a line, by its index, and the index of their end."""
+        found: list[Channel] = []
+        begin = 0
+        while begin < len(self.lines):
+            if self.lines[begin].strip():
+                more, begin = read(self, begin)
+                found += more
+            begin += 1
+        return tuple(found)
+
     def require_no_factor(self, header: Iterable[tuple[int, str]]) -> None:
         """Raise Flaw for a factor of the numbers in lines of a header, with their numbers, unless the unit is given."""
         for number, text in header if self.given.unit is None else ():
@@ -120,9 +131,8 @@ class Source:
             raise Flaw(f"ends at line {len(self.lines)}, before {count} numbers")
         for index in range(first, first + rows):
             if END.match(self.lines[index]):
-                raise Flaw(
-                    f"line {index + 1} ends the channel after {per * (index - first)} of {count} numbers or fewer"
-                )
+                read = f"{per * (index - first)} of {count} numbers or fewer"
+                raise Flaw(f"line {index + 1} ends the channel after {read}")
         lines = self.lines[first : first + rows]
         fields = [line[at : at + width] for line in lines for at in range(0, per * width, width)]
         if "".join(fields[count:]).strip():
@@ -183,12 +193,8 @@ class Source:
                 self.remarks.append(f"--unit: {self.given.unit} given, the header says {text.strip()}")
             return given
         if stated is None:
-            said = (
-                f'"{text.strip()}" as unit of the values, which is not known'
-                if text.strip()
-                else "no unit of the values"
-            )
-            raise Flaw(f"states {said}; give it by --unit: {USUAL}")
+            unknown = f'"{text.strip()}" as unit of the values, which is not known'
+            raise Flaw(f"states {unknown if text.strip() else 'no unit of the values'}; give it by --unit: {USUAL}")
         if stated.quantity not in MOTIONS:
             raise Flaw(f"has {stated.quantity} ({text.strip()}), must have {' or '.join(MOTIONS)}")
         if (quantity := quantity_named(named)) and quantity != stated.quantity:
@@ -249,11 +255,8 @@ class Source:
         if not SMALLEST <= time_step <= LARGEST:
             raise Flaw(f"has a time step of {time_step:g} s, must be positive")
         stated, rounding = with_rounding(length)
-        if (
-            stated
-            and self.given.time_step is None
-            and abs(len(numbers) * time_step - stated) > 2.0 * time_step + LENGTH_TOLERANCE * stated + rounding
-        ):
+        tolerance = 2.0 * time_step + LENGTH_TOLERANCE * (stated or 0.0) + rounding
+        if stated and self.given.time_step is None and abs(len(numbers) * time_step - stated) > tolerance:
             have = f"{len(numbers)} samples, one every {time_step:g} s, have {len(numbers) * time_step:g} s"
             said = f"the header states a length of {stated:g} s, {have}; if they are right, give --dt {time_step:g}"
             raise Flaw(f"{component or quantity}: {said}")

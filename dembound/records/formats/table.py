@@ -144,9 +144,8 @@ def read_table(source: Source) -> Table:
         advice = f"; --skip {number} leaves out all above" if len(above) < len(rows) / LOWEST else f': "{text[:30]}"'
         raise Flaw(f"line {number} is no line of numbers like those around it{advice}")
     if separator == "," and all(value.is_integer() for row in rows for value in row) and len(rows[0]) > 1:
-        raise Flaw(
-            "has whole numbers between commas; if these are decimal commas, write points, or semicolons between columns"
-        )
+        advice = "if these are decimal commas, write points, or semicolons between columns"
+        raise Flaw(f"has whole numbers between commas; {advice}")
     if not source.given.series:
         _require_no_header(rows, [text for _, text, _ in found[first:]], found[first][0])
     for number, text, numbers in found[:first]:
@@ -211,12 +210,8 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
     These have the number of all others, or fewer numbers than other lines, or other digits behind the point than all.
     """
     widths, total = [len(row) for row in rows], sum(map(len, rows))
-    if (
-        len(rows) > 3
-        and set(widths) == {2}
-        and rows[0][0] > rows[1][0]
-        and increases(np.array([row[0] for row in rows[1:]]))
-    ):
+    are_pairs = len(rows) > 3 and set(widths) == {2}
+    if are_pairs and rows[0][0] > rows[1][0] and increases(np.array([row[0] for row in rows[1:]])):
         raise Flaw(f"line {number} precedes times and is none: --skip {number} leaves it out")
     for lines in (1, 2):
         top = [value for row in rows[:lines] for value in row]
@@ -224,8 +219,9 @@ def _require_no_header(rows: Sequence[Sequence[float]], texts: Sequence[str], nu
         if total - len(top) in top or stands_out:
             said = f"--skip {number + lines - 1} leaves it out, --dt gives the time step"
             raise Flaw(f"line {number} may state the number of samples: {said}")
-    first, *others = [_decimals(text) for text in texts]
-    if len(others) > 2 and first != others[0] and len(set(others)) == 1 and any(rows[0]):
+    # digits behind the point of each number in a line
+    first, *others = [[len(digits) for digits in re.findall(r"\d+[.,]?(\d*)", text)] for text in texts]
+    if len(others) > 2 and first != others[0] and all(each == others[0] for each in others) and any(rows[0]):
         said = f"--skip {number} leaves it out, --series takes all as one series"
         raise Flaw(f"line {number} has other digits than all lines below: {said}")
 
@@ -234,11 +230,6 @@ def increases(values: np.ndarray) -> bool:
     """Whether numbers (n,) increase evenly, as times and numbers of samples do."""
     steps = np.diff(values)
     return len(values) > 2 and bool((steps >= 0.0).all() and steps.mean() > 0.0 and np.ptp(steps) <= 0.5 * steps.mean())
-
-
-def _decimals(text: str) -> tuple[int, ...]:
-    """Digits behind the point of each number in a line."""
-    return tuple(len(digits) for digits in re.findall(r"\d+[.,]?(\d*)", text))
 
 
 def _heads(header: Sequence[str], separator: str, width: int) -> list[Head]:

@@ -119,10 +119,8 @@ class TextColumns(Format):
             raise Flaw(f"--columns: names {len(heads)} columns, line {at} has {len(table.rows[-1])} numbers or another")
         source.require_no_factor(table.header)
         for number, text in table.header:
-            if quantity_of(spelled := next((unit[unit.lastindex or 0] for unit in UNIT.finditer(text)), "")) in (
-                "counts",
-                "voltages",
-            ):
+            spelled = next((unit[unit.lastindex or 0] for unit in UNIT.finditer(text)), "")
+            if quantity_of(spelled) in ("counts", "voltages"):
                 raise Flaw(f"line {number} has {spelled}, which must be converted to {' or '.join(MOTIONS)} before")
         step, count = _step(source, table), _stated_count(table)
         if _is_series(source, table, heads, step, count):
@@ -154,8 +152,7 @@ def _is_series(source: Source, table: Table, heads: Sequence[Head], step: Stated
     are_columns = any(heads) or increases(np.array([row[0] for row in table.rows]))
     cut = lines if are_columns or width == 1 else lines - 1
     if table.ragged < cut and (count is None or count[0] != table.total):
-        at = table.numbers[table.ragged]
-        has = len(table.rows[table.ragged])
+        at, has = table.numbers[table.ragged], len(table.rows[table.ragged])
         raise Flaw(f"line {at} has {has} numbers, others have {width}; if all are one series: --series")
     if width == 1 or (table.ragged == lines and are_columns):
         return width == 1
@@ -329,9 +326,8 @@ def _times(source: Source, table: Table, head: Head, at: int) -> np.ndarray:
         raise Flaw(f"{flaw}{line}; {otherwise}") from None
     step = (values[-1] - values[0]) / (len(values) - 1)
     if step < SHORT and values[0] > OFFSET * step:
-        raise Flaw(
-            f"has times of {values[0]:.10g}, {step:.3g} apart, days of a spreadsheet? Write seconds; {otherwise}"
-        )
+        said = f"has times of {values[0]:.10g}, {step:.3g} apart, days of a spreadsheet?"
+        raise Flaw(f"{said} Write seconds; {otherwise}")
     if unit is None and (head.unit or re.search(r"/\s*[\d.]", head.name)):
         raise Flaw(f'has times in "{head.unit or head.name}", which is not known; {otherwise}')
     if unit is None and step > BARE:

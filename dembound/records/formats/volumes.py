@@ -11,6 +11,7 @@ corrected accelerations, velocities and displacements. A line "/&" ends a channe
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -67,16 +68,7 @@ class Volumes(Format):
             raise Flaw("holds spectra (V3), must be V1 or V2")
         place, event = TITLE[volume]
         title = f"{source.line(place)[:40].strip()}, {source.line(event)[:40].strip()}"
-        channels: list[Channel] = []
-        begin = 0
-        while begin < len(source.lines):
-            if source.lines[begin].strip():
-                if _volume(source.lines, begin) != volume:
-                    raise Flaw(f"line {begin + 1} is not the first one of a channel of {volume}")
-                more, begin = _channel(source, volume, begin)
-                channels += more
-            begin += 1
-        return Record(volume, title, tuple(channels))
+        return Record(volume, title, source.channels(partial(_channel, volume)))
 
 
 def _volume(lines: Sequence[str], begin: int) -> str:
@@ -89,8 +81,10 @@ def _volume(lines: Sequence[str], begin: int) -> str:
     return "USC V2" if found == "CSMIP V2" and "volume i:" in second else found
 
 
-def _channel(source: Source, volume: str, begin: int) -> tuple[list[Channel], int]:
+def _channel(volume: str, source: Source, begin: int) -> tuple[list[Channel], int]:
     """The quantities of the channel that begins at a line, by its index, and the index of the line that ends it."""
+    if _volume(source.lines, begin) != volume:
+        raise Flaw(f"line {begin + 1} is not the first one of a channel of {volume}")
     at = begin + HEADER[volume[-2:]]
     named = r"^(?:chan\s+\d+:|comp\b(?=[^:]*$))\s*(\S+(?: \S+)*?)\s*(?:deg)?\s*(?:\(.*\)\s*|\s\d+\s*)?$"
     component = source.found(named, begin, at, "the component")[1]
@@ -165,9 +159,8 @@ def _from_film(source: Source, component: str, begin: int, at: int) -> tuple[Cha
 
 def _length(source: Source, begin: int, at: int) -> str:
     """The length of the record (s) in the header of a channel; empty without one."""
-    found = re.search(
-        rf"(?:record length|duration)\s*=\s*({DECIMAL})", "\n".join(source.lines[begin:at]), re.IGNORECASE
-    )
+    text = "\n".join(source.lines[begin:at])
+    found = re.search(rf"(?:record length|duration)\s*=\s*({DECIMAL})", text, re.IGNORECASE)
     return found[1] if found else ""
 
 
@@ -180,15 +173,11 @@ def _require_text(source: Source, begin: int, at: int, count: int, peak: str, st
         ("peak", rf"\bmax\s*=\s*({DECIMAL})\s*g\b", number_of(peak)),
     ):
         said, rounding = with_rounding(match[1] if (match := re.search(pattern, text, re.IGNORECASE)) else "")
-        if (
-            said is not None
-            and below is not None
-            and abs(said - abs(below)) > 1.01 * rounding
-            and not source.given.unit
-        ):
-            raise Flaw(
-                f"line {begin + 1} begins a text with a {what} of {said:g}, below is {abs(below):g}; --unit takes that"
-            )
+        if said is None or below is None or source.given.unit:
+            continue
+        if abs(said - abs(below)) > 1.01 * rounding:
+            begins = f"line {begin + 1} begins a text with a {what} of {said:g}"
+            raise Flaw(f"{begins}, below is {abs(below):g}; --unit takes that")
 
 
 def _peak(source: Source, at: int) -> str:
