@@ -117,6 +117,7 @@ CASES = {
         "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
         "outside": {"element": 2.0, "margin": 2},
         "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
+        "monitor": [*GRAINS["monitor"], {"name": "beside", "position": [-1.0, 2.0]}],
     },
     "membranes, past the peak": DISKS
     | {
@@ -222,6 +223,7 @@ def differences(one, other) -> list[str]:
 
 
 LATE = (
+    "monitors and loads in a continuum",
     "settled box in the ground",
     "settled layers",
     "stress at rest beside a free field",
