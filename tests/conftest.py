@@ -45,10 +45,15 @@ FIRST = (
     "running/test_faults.py",
     "unit/test_mistakes.py",
     "unit/test_cli.py",
+    "verification/test_stress_at_rest.py",
+    "verification/test_hertz.py",
+    "verification/test_rolling.py",
+    "verification/test_damped_ground_that_breaks.py",
 )
 """Files that run first: two processes begin with the first two, go on with the next two, then take one after the other.
 
-So one compiles the kernels of bars, the other the kernels of disks.
+So one compiles the kernels of bars, the other the kernels of disks. The last ones take long for few tests: among the
+last files to run, one process would wait for the other.
 """
 
 

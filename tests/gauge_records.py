@@ -140,10 +140,7 @@ RECORDS = (
     Record("other sign", (sign, noise(0.005)), refused="these are not returns of one pulse"),
     Record("length in mm", (noise(0.003),), length=990.0, refused="in m, not mm"),
     Record(
-        "times in s, read as ms",
-        (noise(0.003),),
-        reading=Reading(time_unit="ms"),
-        refused="must be 100 to 10000 m/s",
+        "times in s, read as ms", (noise(0.003),), reading=Reading(time_unit="ms"), refused="must be 100 to 10000 m/s"
     ),
 )
 """Records of all kinds of mistakes that were seen, and of instruments."""

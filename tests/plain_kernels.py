@@ -7,18 +7,7 @@ import numpy as np
 
 from dembound.kernels import tables
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.contacts import (
-    BONDED,
-    CLOSED,
-    CLOSES,
-    CLOSING,
-    INTACT,
-    NONE,
-    OPEN,
-    REFERENCE,
-    SHEAR,
-    TENSION,
-)
+from dembound.kernels.contacts import BONDED, CLOSED, CLOSES, CLOSING, INTACT, NONE, OPEN, REFERENCE, SHEAR, TENSION
 from dembound.laws.law import Limits
 
 Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]

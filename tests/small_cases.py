@@ -38,10 +38,7 @@ PULLED: Tables = SPALLING | {
 PUSHED: Tables = {
     "packing": {"pattern": "A", "size": [10.0, 2.5], "radius": 0.25},
     "material": {"density": 2500.0, "p_wave_speed": 1000.0},
-    "boundary": {
-        "left": {"type": "velocity", "wave_p": "push", "wave_s": "shake"},
-        "right": {"type": "viscous"},
-    },
+    "boundary": {"left": {"type": "velocity", "wave_p": "push", "wave_s": "shake"}, "right": {"type": "viscous"}},
     "wave": {
         "push": {"type": "cosine", "amplitude": 0.5, "period": 0.01},
         "shake": {"type": "cosine", "amplitude": 0.2, "period": 0.01},

@@ -10,6 +10,7 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import INLINED
+from dembound.kernels.compiler.bundles import passed_by_address
 from dembound.kernels.law import answer, generic
 from dembound.pairwise import COMPILERS, PAIR_LAWS
 
@@ -114,6 +115,7 @@ def bond_room(limits, constants, k, kind, factor, stretch, shear, turn):
 
 def _compile(limits: type, functions: dict[str, Any]) -> None:
     """Make the functions above call those of a law for limits of its type."""
+    passed_by_address(limits)
     for name, function in functions.items():
         answer(globals()[name], limits, njit(**INLINED)(function))
 

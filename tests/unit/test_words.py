@@ -13,12 +13,7 @@ OWN = re.compile(r":[+]?\.[23]g\} %")
 
 @pytest.mark.parametrize(
     ("share", "digits", "words"),
-    [
-        (0.01234, 2, "1.2 %"),
-        (0.9951, 2, "100 %"),
-        (9.996, 3, "1000 %"),
-        (float("nan"), 2, "nan %"),
-    ],
+    [(0.01234, 2, "1.2 %"), (0.9951, 2, "100 %"), (9.996, 3, "1000 %"), (float("nan"), 2, "nan %")],
 )
 def test_shares_have_their_digits_and_no_exponent(share: float, digits: int, words: str) -> None:
     assert percent(share, digits) == words

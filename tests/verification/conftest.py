@@ -303,6 +303,6 @@ def hold_in_order(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     """Has disks held one by one, not in rows of copies.
 
     Kernels of rows for a stress and for strengths by layer in one, or for Hertz's law, would be compiled for a test or
-    two alone; each has them in others, here, in test_limits_by_layer.py and, by eight pairs, in laws/test_law.py.
+    two alone; each has them in others: here, by eight pairs in laws/test_law.py, slow ones in test_limits_by_layer.py.
     """
     return lambda: monkeypatch.setattr(layout, "_plan", lambda part, levels: None)

@@ -39,7 +39,9 @@ def shares_of_strength(simulation: Simulation, u: np.ndarray) -> np.ndarray:
     return np.stack([tension / (factor * BRITTLE["pb_ten"]), np.abs(shear) / cohesion])
 
 
-@pytest.mark.parametrize("size", [(40.0, 4.0), (8.0, 4.0)], ids=["rows of copies", "one by one"])
+@pytest.mark.parametrize(
+    "size", [pytest.param((40.0, 4.0), marks=pytest.mark.slow), (8.0, 4.0)], ids=["rows of copies", "one by one"]
+)
 def test_every_bond_breaks_when_its_own_strength_is_reached(lab, size):
     simulation = run(lab, size, 0, **SCATTER, elastic_start=False)
     (contacts,) = simulation.system.contacts.values()
@@ -55,7 +57,8 @@ def test_every_bond_breaks_when_its_own_strength_is_reached(lab, size):
     assert broken > 20
 
 
-def test_the_same_breaks_by_any_threads_after_a_cut_and_after_an_elastic_start(lab, monkeypatch):
+def test_the_same_breaks_by_any_threads_after_a_cut_and_after_an_elastic_start(lab, hold_in_order, monkeypatch):
+    hold_in_order()
     monkeypatch.setattr(memory, "PARTICLES_PER_THREAD", 1)
     one, two, cut, at_once = (
         run(lab, **SCATTER), run(lab, number=2, **SCATTER), run(lab, steps=0, **SCATTER),
@@ -77,7 +80,8 @@ def test_the_same_breaks_by_any_threads_after_a_cut_and_after_an_elastic_start(l
     assert factors[broken].mean() < 0.9 * factors[contacts.of("contact_type") < contacts.own_types].mean()
 
 
-def test_energy_of_bonds_that_break_at_their_own_strengths_closes(lab):
+def test_energy_of_bonds_that_break_at_their_own_strengths_closes(lab, hold_in_order):
+    hold_in_order()
     simulation = run(lab, steps=0, **SCATTER)
     ledger = lab.ledger(simulation, 10)
     simulation.run(STEPS)
@@ -86,8 +90,9 @@ def test_energy_of_bonds_that_break_at_their_own_strengths_closes(lab):
     assert abs(last.error) < 3e-5 * last.supplied  # normals of loose pairs rotate: 5e-6
 
 
-def test_the_first_bond_breaks_at_the_load_factor(lab):
+def test_the_first_bond_breaks_at_the_load_factor(lab, hold_in_order):
     """Without contacts (`contact_share` 0) nothing else ends the elastic law."""
+    hold_in_order()
     bonds = BRITTLE | {"contact_share": 0.0, "fric": 0.0} | SCATTER
 
     def breaking(scale: float, **changes) -> Simulation:

@@ -75,6 +75,7 @@ def test_a_weakened_row_lets_the_block_slide_as_a_rigid_one(lab) -> None:
     assert abs(last.error) < 1e-6 * last.supplied  # measured 4e-8: normals rotate
 
 
+@pytest.mark.slow
 def test_nothing_changes_before_and_nothing_without_stress(lab) -> None:
     """Until the change, and after it without forces along the weak row, bits are those of a run without the group's."""
     strong = BASE | {"time": BEGINS, "fric": 0.5, "pb_ten": 1e7, "pb_coh": 1e7}

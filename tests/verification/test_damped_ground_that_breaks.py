@@ -77,6 +77,7 @@ def test_until_contacts_open_it_moves_as_elastic_ground_of_the_same_quality(geom
     assert np.abs(broken - elastic).max() < (1e-10 if geometry == "reference" else 1e-4) * np.abs(elastic).max()
 
 
+@pytest.mark.slow  # arms between layers have kernels of their own
 def test_between_layers_of_unlike_quality_a_bond_is_damped_by_both():
     """Its halves are in series, with weights by their compliance: 9e-4, and 2e-2 with those of its first disk alone.
 

@@ -82,6 +82,7 @@ def test_the_ground_comes_to_rest_and_its_base_to_its_place() -> None:
     assert np.abs(found.base[-1]).max() < 5e-4
 
 
+@pytest.mark.slow
 def test_without_springs_the_base_creeps_and_without_a_zone_it_sinks() -> None:
     """What each of the two does: dashpots alone have no force at rest."""
     sides = ("left", "right", "bottom")

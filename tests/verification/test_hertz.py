@@ -134,7 +134,7 @@ def test_the_step_limit_and_factors_of_sides_follow_the_tangent():
 
 
 @pytest.mark.parametrize(
-    ("pattern", "in_rows"), [("A", False), ("B", False), pytest.param("A", True, marks=pytest.mark.slow)]
+    ("pattern", "in_rows"), [("B", False), *(pytest.param("A", each, marks=pytest.mark.slow) for each in (False, True))]
 )
 def test_pressed_ground_is_at_rest_from_the_start(hold_in_order, pattern, in_rows):
     if not in_rows:

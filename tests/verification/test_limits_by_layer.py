@@ -63,6 +63,7 @@ def cracks_of(simulation: Simulation) -> Cracks:
     return simulation.system.take_cracks(STEPS)
 
 
+@pytest.mark.slow  # kernels of rows for limits by type are compiled for these alone
 @pytest.mark.parametrize(("pattern", "geometry"), [("A", "reference"), ("B", "updated")])
 def test_equal_columns_give_the_bits_of_numbers(run, pattern: str, geometry: str) -> None:
     numbers, columns = (run(pattern, geometry, each) for each in (None, ({}, {})))
@@ -76,6 +77,7 @@ def test_equal_columns_give_the_bits_of_numbers(run, pattern: str, geometry: str
         assert np.array_equal(getattr(columns.state, name), getattr(numbers.state, name))
 
 
+@pytest.mark.slow  # kernels of rows for limits by type are compiled for these alone
 @pytest.mark.parametrize(("pattern", "geometry"), [("A", "reference"), ("B", "updated")])
 def test_only_the_weaker_layer_breaks_and_slides(run, pattern: str, geometry: str) -> None:
     simulation = run(pattern, geometry, ({}, TOUGH))

@@ -109,6 +109,7 @@ def test_listings_change_no_bit(lab, make, steps, monkeypatch) -> None:
     assert (make is tumbling) == (usual[1] == [])
 
 
+@pytest.mark.slow
 def test_a_missing_pair_is_seen(lab, monkeypatch) -> None:
     *usual, _ = outcome(tumbling(lab), 1500)
     found_by = relisting.near_keys

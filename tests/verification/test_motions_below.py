@@ -27,11 +27,7 @@ def column(bottom: dict, wave: dict, *, half_mass: bool = True, layers: Sequence
     tables = {
         "packing": {"pattern": "A", "size": [0.5, 20.0], "radius": 0.25},
         "material": {"density": 1900.0, "p_wave_speed": 300.0, "fric": 0.5},
-        "boundary": {
-            "left": {"type": "periodic"},
-            "right": {"type": "periodic"},
-            "bottom": given,
-        },
+        "boundary": {"left": {"type": "periodic"}, "right": {"type": "periodic"}, "bottom": given},
         "wave": {"w": wave, "v": PULSE | {"frequency": 4.0}},
         "run": {"duration": 1.0},
         "layer": [*layers],

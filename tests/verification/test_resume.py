@@ -117,6 +117,7 @@ CASES = {
         "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
         "outside": {"element": 2.0, "margin": 2},
         "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
+        "monitor": [*GRAINS["monitor"], {"name": "beside", "position": [-1.0, 2.0]}],
     },
     "membranes, past the peak": DISKS
     | {
@@ -221,8 +222,15 @@ def differences(one, other) -> list[str]:
     return sorted(name for name in first.keys() | second.keys() if first.get(name) != second.get(name))
 
 
-LATE = ("settled box in the ground", "damped by Q, settled beside a free field", "Rayleigh damping")
-"""Cases whose loops take long to compile."""
+LATE = (
+    "monitors and loads in a continuum",
+    "settled box in the ground",
+    "settled layers",
+    "stress at rest beside a free field",
+    "damped by Q, settled beside a free field",
+    "Rayleigh damping",
+)
+"""Cases whose loops take long to compile, and keep no arrays that none of the others has."""
 
 FILED = ("law changes, bonds break", "cracks that open")
 """Cases whose checkpoints in files are tried; the others with ``-m slow``."""

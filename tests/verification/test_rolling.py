@@ -81,7 +81,9 @@ def broken(lab, size: tuple[float, float], steps: int, number: int = 1, **materi
     return lab.advanced(lab.simulation(lab.scene("B", size, **words, material=BRITTLE | material)), steps, number)
 
 
-@pytest.mark.parametrize("size", [(40.0, 4.0), (8.0, 4.0)], ids=["rows of copies", "one by one"])
+@pytest.mark.parametrize(
+    "size", [pytest.param((40.0, 4.0), marks=pytest.mark.slow), (8.0, 4.0)], ids=["rows of copies", "one by one"]
+)
 def test_broken_ground_has_the_same_bits_by_any_threads_and_after_a_cut_and_the_ledger_closes(lab, size, monkeypatch):
     monkeypatch.setattr(memory, "PARTICLES_PER_THREAD", 1)
     one, cut = (broken(lab, size, 0) for _ in range(2))

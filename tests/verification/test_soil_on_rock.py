@@ -4,6 +4,7 @@ import pytest
 import soil_on_rock
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:monitor.surface. its velocity is")
 def test_a_damped_column_has_the_spectrum_of_the_hysteretic_one(tmp_path) -> None:
     """DEEPSOIL's example 4 with 12 disks in a wave of 40 Hz; both moduli differ in phase, so histories differ more."""

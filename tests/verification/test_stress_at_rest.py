@@ -135,7 +135,7 @@ def test_k0_stays_what_it_is_given_as(lab, name: str, law: str) -> None:
     assert speed(lab, scene, found) < 1e-9
 
 
-@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+@pytest.mark.parametrize("law", ["elastic", pytest.param("linearpbond", marks=pytest.mark.slow)])
 def test_each_layer_has_its_own_k0(lab, law: str) -> None:
     """On the lattice, whose disks bear all their weight, it is exact where contacts on all sides are of one layer."""
     layers = [{"thickness": 10.0, "density": 1800.0, "p_wave_speed": 400.0, "k0": 0.8}, {"density": 2300.0}]

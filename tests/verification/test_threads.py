@@ -99,7 +99,7 @@ SCENES = {
     "settled, test of a sample under pressure": {
         "size": FEW,
         "boundary": {"bottom": {"type": "fixed", "within": PLATEN["within"]}, "top": PLATEN},
-        "material": WEAK | {"damp": 0.7, "pb_scatter": {"type": "normal", "deviation": 0.3}},
+        "material": WEAK | {"damp": 0.7},
         "static": {"ratio": 1e-2},
         "load": [{"pressure": 2e4, "sides": ["left", "right", "bottom", "top"]}],
         "run": {"duration": 1.0, "until": "peak", "peak_for": 0.008},

@@ -16,10 +16,7 @@ from dembound.motion.simulation import Simulation
 pytestmark = pytest.mark.slow
 
 
-@pytest.mark.parametrize(
-    ("nodes", "part"),
-    [(17.0, 2.2e-4), (8.0, 2.7e-3), (6.0, 1.6e-2), (4.0, 0.47)],
-)
+@pytest.mark.parametrize(("nodes", "part"), [(17.0, 2.2e-4), (8.0, 2.7e-3), (6.0, 1.6e-2), (4.0, 0.47)])
 def test_coarse_elements_send_back_short_waves(nodes: float, part: float) -> None:
     """S waves at normal incidence, which layers without elements would take to 2e-6; elements are whole disks high."""
     side = Side.of(nodes)

@@ -198,9 +198,17 @@ def _write(c: Any, kind: Any, value: Any, place: Any) -> None:
         c.builder.store(c.pyapi.long_as_longlong(value), place)
 
 
+def passed_by_address(kind: type) -> None:
+    """Have kernels that are called from Python take bundles of a type by their address, as those that the loop calls.
+
+    So each kernel is compiled once for both.
+    """
+    typeof_impl.register(kind)(lambda bundle, _: At(kind_of(bundle)))
+
+
 for _class in vars(tables).values():
     if isinstance(_class, type) and issubclass(_class, tuple):
-        typeof_impl.register(_class)(lambda bundle, _: At(kind_of(bundle)))
+        passed_by_address(_class)
 
 
 def _loaded(context: Any, builder: Any, kind: Any, place: Any) -> Any:

@@ -14,7 +14,7 @@ import pytest
 
 HERE = Path(__file__).parent
 REGISTERED = {
-    "laws": ["Linear", "Namesake", "Brittle", "Tips", "Rubber", "Forgetful"],
+    "laws": ["Linear", "Namesake", "Brittle", "Rubber", "Forgetful"],
     "methods": ["Cone"],
     "boundaries": ["OtherInput", "LateInput"],
     "packings": ["Hexagonal"],
@@ -24,23 +24,33 @@ REGISTERED = {
 """Types of added_types.py, in which there is no `Absent`; each is registered under its own name."""
 
 
+def registered(site: Path, name: str, module: str, groups: dict[str, list[str]]) -> str:
+    """A folder with a package that registers types of a module."""
+    info = site / f"{name}-1.0.dist-info"
+    info.mkdir(parents=True)
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    lines = []
+    for group, names in groups.items():
+        lines += [f"[dembound.{group}]", *(f"{number} = {module}:{each}" for number, each in enumerate(names))]
+    (info / "entry_points.txt").write_text("\n".join(lines))
+    return str(site)
+
+
 @pytest.fixture(scope="module")
 def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs Python in this folder beside a package that registers added_types.py."""
-    site = tmp_path_factory.mktemp("site")
-    info = site / "added-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: added\nVersion: 1.0\n")
-    lines = []
-    for group, names in REGISTERED.items():
-        lines += [f"[dembound.{group}]", *(f"{number} = added_types:{name}" for number, name in enumerate(names))]
-    (info / "entry_points.txt").write_text("\n".join(lines))
-    path = os.pathsep.join([str(site), str(HERE), *filter(None, [os.environ.get("PYTHONPATH")])])
+    """Runs Python in this folder beside a package that registers added_types.py.
 
-    def run(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    With `tips` another registers the law of added_pair_law.py, whose functions have all kernels compiled for it.
+    """
+    site = tmp_path_factory.mktemp("site")
+    types = registered(site / "types", "added", "added_types", REGISTERED)
+    law = registered(site / "law", "added_law", "added_pair_law", {"laws": ["Tips"]})
+
+    def run(*arguments: str, tips: bool = False, **variables: str) -> subprocess.CompletedProcess[str]:
+        path = [types, *([law] if tips else []), str(HERE), *filter(None, [os.environ.get("PYTHONPATH")])]
         done = subprocess.run(
             [sys.executable, *arguments],
-            env={**os.environ, "PYTHONPATH": path} | variables,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(path)} | variables,
             capture_output=True,
             text=True,
             check=False,
@@ -60,7 +70,7 @@ def found(python) -> dict[str, Any]:
 @pytest.fixture(scope="module", params=["1", pytest.param("0", marks=pytest.mark.slow)], ids=["python", "compiled"])
 def moved(python, request) -> dict[str, Any]:
     """Results of use_kernels.py, whose kernels take 45 s to compile."""
-    return json.loads(python("-P", "-c", "import use_kernels", NUMBA_DISABLE_JIT=request.param).stdout)
+    return json.loads(python("-P", "-c", "import use_kernels", tips=True, NUMBA_DISABLE_JIT=request.param).stdout)
 
 
 def test_a_law_without_moments_closes_its_books(found) -> None:

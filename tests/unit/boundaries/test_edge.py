@@ -51,13 +51,7 @@ def lattice() -> tuple[np.ndarray, np.ndarray]:
     return np.column_stack([x.ravel(), y.ravel()]), np.full(COLUMNS * ROWS, 0.5)
 
 
-@pytest.mark.parametrize(
-    ("side", "expected"),
-    [
-        ("right", [5, 11, 17, 23]),
-        ("top", [18, 19, 20, 21, 22, 23]),
-    ],
-)
+@pytest.mark.parametrize(("side", "expected"), [("right", [5, 11, 17, 23]), ("top", [18, 19, 20, 21, 22, 23])])
 def test_a_flat_side_is_its_outer_row_in_order_of_places_not_of_numbers(side: str, expected: list[int]) -> None:
     positions, radii = lattice()
     shuffle = np.random.default_rng(0).permutation(len(radii))

@@ -47,9 +47,7 @@ ONE_OF_EACH = {(path[0], type(reduce(getitem, path, FULL))): path for path in PA
 
 
 @pytest.mark.parametrize(
-    "path",
-    [path if path in ONE_OF_EACH else pytest.param(path, marks=pytest.mark.slow) for path in PATHS],
-    ids=str,
+    "path", [path if path in ONE_OF_EACH else pytest.param(path, marks=pytest.mark.slow) for path in PATHS], ids=str
 )
 def test_whatever_is_put_anywhere_is_answered_about_that_place(path: tuple[Any, ...]) -> None:
     refused = [found for value in WRONG if (found := problems(replaced(FULL, path, value)))]

@@ -47,13 +47,7 @@ def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
 
 def ended(code: str, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run a command line, given by its arguments, in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-c", code],
-        text=True,
-        check=False,
-        stderr=subprocess.PIPE,
-        **options,
-    )
+    return subprocess.run([sys.executable, "-c", code], text=True, check=False, stderr=subprocess.PIPE, **options)
 
 
 def command(*arguments: str) -> str:

@@ -49,10 +49,7 @@ def test_waves_run_as_on_the_infinite_row(name: str, horizon: int, step: float) 
         np.testing.assert_allclose(far / near, np.exp(-0.1j * wavenumber), atol=0.02 if horizon == 8 else 3e-3)
 
 
-@pytest.mark.parametrize(
-    ("name", "side"),
-    [("input by a matched layer, m = 3", "left"), ("attenuation", "right")],
-)
+@pytest.mark.parametrize(("name", "side"), [("input by a matched layer, m = 3", "left"), ("attenuation", "right")])
 def test_mobility_is_that_of_two_endless_halves(name: str, side: str) -> None:
     # Two impedances ρcA √(1 + γ/s) of long waves, with kΔx = 0.02 within (m² + 2)(kΔx)²/24 of it for m = 3, 2e-4;
     # beside that the bonds at the push give way like a spring, by some kΔx of the motion, a quarter of a period late.

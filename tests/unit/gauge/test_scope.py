@@ -108,10 +108,7 @@ def test_columns_go_by_name_or_number(tmp_path):
         ("0 1\n2 2\n1 3\n", "that of line 3 does not follow the one before"),
         ("0 1\n1 1\n2 1\n", "has no signal, all values are 1"),
         ("0 1\n1 2\n2 3\n9 4\n10 5\n", "must have even times, there is a gap of 7 s at 2 s, others are 1 s"),
-        (
-            "0,000,0,10\n0,001,0,20\n0,002,0,15\n0,003,0,10\n",
-            "has 4 columns; must be a number from 1 to 4",
-        ),
+        ("0,000,0,10\n0,001,0,20\n0,002,0,15\n0,003,0,10\n", "has 4 columns; must be a number from 1 to 4"),
         ("a\0b", "has bytes that no text has"),
     ],
 )

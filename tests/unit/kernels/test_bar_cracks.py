@@ -34,11 +34,7 @@ def a_zone(horizon: int) -> Bonds:
     return bonds
 
 
-LAYOUTS = {
-    "finite differences": lambda: Bonds(rod(), 0),
-    "three": lambda: all_over(3),
-    "a seam": lambda: a_zone(3),
-}
+LAYOUTS = {"finite differences": lambda: Bonds(rod(), 0), "three": lambda: all_over(3), "a seam": lambda: a_zone(3)}
 
 
 @pytest.fixture(params=LAYOUTS.values(), ids=LAYOUTS.keys())

@@ -19,7 +19,8 @@ PARTICLES, PAIRS = 25, 60
 STEP = 0.1
 WEAK = Limits(friction=0.5, tension=0.3, cohesion=0.25, tan_fa=0.6, geometry=UPDATED)
 FAR = 1e3
-EVERY = Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), *np.ones((2, 2), dtype=np.int64), reach=np.inf)
+ONE, WRAPS = np.ones(2, dtype=np.int64), np.ones(2, dtype=bool)
+EVERY = Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), ONE, WRAPS, reach=np.inf)
 """One cell with all particles."""
 
 

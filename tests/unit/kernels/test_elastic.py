@@ -144,7 +144,8 @@ def test_steps_and_their_log_are_those_of_a_plain_leapfrog(bodies: Bodies, steps
     close(log.top_speed, np.hypot(speeds[..., 0], speeds[..., 1]).max(axis=0))
 
 
-EVERY = tables.Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), *np.ones((2, 2), dtype=np.int64), reach=np.inf)
+ONE, WRAPS = np.ones(2, dtype=np.int64), np.ones(2, dtype=bool)
+EVERY = tables.Cells(np.array([0, PARTICLES]), np.arange(PARTICLES), ONE, WRAPS, reach=np.inf)
 """One cell with all particles."""
 
 

@@ -69,8 +69,7 @@ def apart(places: np.ndarray, periods) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("periods", "length"),
-    [((None, None), 20.0), ((SIZE[0], None), 3.0), ((None, SIZE[1]), 20.0), (SIZE, 3.0)],
+    ("periods", "length"), [((None, None), 20.0), ((SIZE[0], None), 3.0), ((None, SIZE[1]), 20.0), (SIZE, 3.0)]
 )
 def test_no_two_disks_that_may_meet_have_come_nearer_than_that(periods, length) -> None:
     places, number = positions(), np.random.default_rng(5).permutation(COUNT)

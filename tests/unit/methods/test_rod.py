@@ -39,12 +39,7 @@ def tension(rod: Rod) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(1e3 / rod.springs)])
 
 
-LAYOUTS = {
-    "springs": [],
-    "across": [(12, 30)],
-    "all": [(0, 51)],
-    "near": [(10, 18), (24, 40)],
-}
+LAYOUTS = {"springs": [], "across": [(12, 30)], "all": [(0, 51)], "near": [(10, 18), (24, 40)]}
 
 
 @pytest.mark.parametrize("horizon", [1, 3])

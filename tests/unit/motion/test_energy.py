@@ -131,12 +131,7 @@ def test_a_wave_that_begins_just_before_a_half_step_is_not_stopped() -> None:
 
 @pytest.mark.parametrize(
     ("interval", "last", "steps"),
-    [
-        (10, NEVER, [0, 10, 20]),
-        (10, 27, [0, 10, 20, 27]),
-        (40, 4, [0, 4]),
-        (1, NEVER, list(range(29))),
-    ],
+    [(10, NEVER, [0, 10, 20]), (10, 27, [0, 10, 20, 27]), (40, 4, [0, 4]), (1, NEVER, list(range(29)))],
 )
 def test_entries_may_be_made_at_any_step(bar, interval: int, last: int, steps: list[int]) -> None:
     each, other = simulated(bar), simulated(bar)

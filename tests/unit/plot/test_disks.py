@@ -47,10 +47,7 @@ def away(points, line):
     return np.hypot(*np.moveaxis(points[:, None] - nearest, 2, 0)).min(axis=1).max()
 
 
-@pytest.mark.parametrize(
-    ("name", "in_a_box", "dots"),
-    [("oval", True, 150), ("floor", False, 12)],
-)
+@pytest.mark.parametrize(("name", "in_a_box", "dots"), [("oval", True, 150), ("floor", False, 12)])
 def test_outlines_are_those_of_the_case(name, in_a_box, dots, run, monkeypatch):
     """In a picture and in a movie of so many dots per inch."""
     monkeypatch.setattr(style, "DOTS_PER_INCH", dots)

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 from matplotlib import image
 
-from dembound.plot.style import (
-    decade,
-    new_figure,
-    save,
-    time_unit,
-)
+from dembound.plot.style import decade, new_figure, save, time_unit
 from dembound.plot.table import columns_of, write_lines
 
 

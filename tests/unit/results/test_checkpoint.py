@@ -10,11 +10,7 @@ from dembound.errors import CaseError
 from dembound.results.checkpoint import Checkpoint, settled_state
 from dembound.version import __version__
 
-KEYS: dict[str, Any] = {
-    "packing": {"seed": 1},
-    "outside": {"element": 5.0, "margin": None},
-    "outside_rows": [5.0, 5.0],
-}
+KEYS: dict[str, Any] = {"packing": {"seed": 1}, "outside": {"element": 5.0, "margin": None}, "outside_rows": [5.0, 5.0]}
 """Keys of a stage beside a continuum."""
 
 
@@ -25,10 +21,7 @@ def test_elements_that_follow_from_the_waves_are_named_in_one_line(tmp_path: Pat
     finer = KEYS | {"outside": {"element": 4.0, "margin": 2}, "outside_rows": [4.0, 4.0, 4.0]}
     for keys, lines in (
         (KEYS | {"packing": {"seed": 2}}, ["packing.seed: is 2 here, and 1 there"]),
-        (
-            finer,
-            ["outside.margin: is 2 here, and not given there", "outside.element: elements, which settle too,"],
-        ),
+        (finer, ["outside.margin: is 2 here, and not given there", "outside.element: elements, which settle too,"]),
     ):
         with pytest.raises(CaseError) as error:
             settled_state(tmp_path, "rest", keys)

@@ -6,13 +6,7 @@ import pytest
 
 from dembound.errors import CaseError, RecordError
 from dembound.results.histories import read_histories, read_side_history
-from dembound.results.reader import (
-    cracks_until,
-    energy_of,
-    history_of,
-    open_record,
-    side_energies_of,
-)
+from dembound.results.reader import cracks_until, energy_of, history_of, open_record, side_energies_of
 from dembound.results.recording import LoadingCurve
 
 

@@ -74,11 +74,7 @@ def assert_same(mesh, expected):
 
 @pytest.mark.parametrize(
     ("run", "kind", "name"),
-    [
-        ("rich_run", Disks(), "particles"),
-        ("cracked_run", Disks(), "contacts"),
-        ("spalled_run", Bars(), "bar"),
-    ],
+    [("rich_run", Disks(), "particles"), ("cracked_run", Disks(), "contacts"), ("spalled_run", Bars(), "bar")],
 )
 def test_all_times_and_arrays_are_those_of_the_single_files(request, tmp_path, run, kind, name):
     record = request.getfixturevalue(run)

@@ -124,10 +124,7 @@ def written(folder) -> dict[str, float]:
 
 @pytest.mark.parametrize(
     ("changes", "output"),
-    [
-        (LAW, {"stress": True, "contacts": True, "peaks": True}),
-        (LAW | STATIC, {"stress": True, "paraview": "vtkhdf"}),
-    ],
+    [(LAW, {"stress": True, "contacts": True, "peaks": True}), (LAW | STATIC, {"stress": True, "paraview": "vtkhdf"})],
 )
 def test_the_size_of_results_of_disks(bar, tmp_path, changes, output) -> None:
     large = {"packing.size": [30.0, 30.0], "reduce.rows": False, "run.duration": 2e-3}

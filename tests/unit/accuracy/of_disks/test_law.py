@@ -114,6 +114,7 @@ def test_what_turns_is_the_given_stress_and_the_weight() -> None:
     assert still.stress == 0.0
 
 
+@pytest.mark.slow
 def test_the_given_law_is_chosen_where_what_turns_is_too_much() -> None:
     """Under 10 MPa the elastic law has an error of 1.3 p/ρc_p² = 0.5 % or more."""
     case = confined({"static.stress": [-1e7, -1e7, 0.0], "run.duration": 0.02})

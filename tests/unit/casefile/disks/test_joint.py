@@ -55,9 +55,7 @@ def test_two_of_one_name():
 
 @pytest.mark.parametrize(
     ("changes", "said"),
-    [
-        ({"material": {"law": "hertz", "density": 2500.0, "hz_shear": 1e9, "hz_poiss": 0.2}}, "is for contacts whose"),
-    ],
+    [({"material": {"law": "hertz", "density": 2500.0, "hz_shear": 1e9, "hz_poiss": 0.2}}, "is for contacts whose")],
 )
 def test_with_other_tables(changes, said):
     assert any(line.startswith(f"joint[1, fault]: {said}") for line in problems_of(tables=PUSHED | changes))

@@ -12,10 +12,7 @@ from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION, note_places
 from dembound.kernels.tables import Contacts
 
-SIDES = {
-    "periodic sideways": {side: WRAP[side] for side in ("left", "right")},
-    "periodic": WRAP,
-}
+SIDES = {"periodic sideways": {side: WRAP[side] for side in ("left", "right")}, "periodic": WRAP}
 Key = tuple[int, int, int, int]
 
 

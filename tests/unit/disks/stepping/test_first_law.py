@@ -2,16 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import (
-    AT_ONCE,
-    BONDED,
-    ELASTIC,
-    SIDES,
-    STEP,
-    WITH_HISTORY,
-    begun,
-    locked_in_forces,
-)
+from disk_systems import AT_ONCE, BONDED, ELASTIC, SIDES, STEP, WITH_HISTORY, begun, locked_in_forces
 from small_cases import small
 
 from dembound.disks.scene import build

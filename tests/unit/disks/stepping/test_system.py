@@ -2,18 +2,7 @@
 
 import numpy as np
 import pytest
-from disk_systems import (
-    BONDED,
-    ELASTIC,
-    SIDES,
-    STEP,
-    TOUGH,
-    WEIGHT,
-    WITH_HISTORY,
-    begun,
-    settled,
-    shaken,
-)
+from disk_systems import BONDED, ELASTIC, SIDES, STEP, TOUGH, WEIGHT, WITH_HISTORY, begun, settled, shaken
 
 from dembound.disks.stepping.scene_parts import contact_lists
 from dembound.disks.stepping.system import DiskSystem

@@ -6,11 +6,7 @@ from disk_systems import LAMB
 from dembound.continuum import sizing
 from dembound.continuum.medium import Medium
 from dembound.disks.surroundings.elements import mesh_of
-from dembound.disks.surroundings.settings import (
-    lasting_time,
-    near_fields,
-    settings_of,
-)
+from dembound.disks.surroundings.settings import lasting_time, near_fields, settings_of
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 500.0)
 BOX = (0.0, 0.0, 40.0, 20.0)

@@ -121,10 +121,7 @@ def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
         assert not list(ends_too_soon(spalling({**changes, **later, "run.duration": 2.3e-3})))
 
 
-STRIKER = [
-    {"name": "striker", "length": 0.2, "velocity": 5.0},
-    {"name": "rod", "length": 0.4, "interface": "contact"},
-]
+STRIKER = [{"name": "striker", "length": 0.2, "velocity": 5.0}, {"name": "rod", "length": 0.4, "interface": "contact"}]
 
 
 def with_ranges(ranges: list[dict], run: dict | None = None, **tables):

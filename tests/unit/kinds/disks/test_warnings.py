@@ -49,11 +49,7 @@ CUT = {**FREELY, "packing.size": [10.0, 10.0], "boundary": RING}
         (LOADED, "is steady", "load.weight: is steady,"),
         (LOADED | {"static": {"boundary": around("fixed", "left")}}, "is steady", None),
         # a circle of 1.5 m touches the side at x = 0 with its middle at 1.5 m
-        (
-            CUT | {"hole": [HOLE | {"centre": [0.0, 5.0], "stage": "before"}]},
-            "hole",
-            "is cut by the periodic left",
-        ),
+        (CUT | {"hole": [HOLE | {"centre": [0.0, 5.0], "stage": "before"}]}, "hole", "is cut by the periodic left"),
         (CUT | {"hole": [HOLE | {"centre": [1.5, 5.0], "stage": "before"}]}, "hole", None),
     ],
 )

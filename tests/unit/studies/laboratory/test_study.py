@@ -63,10 +63,7 @@ def test_a_stopped_test_is_continued_to_the_same_bits(tmp_path, monkeypatch) -> 
     ("words", "message"),
     [
         ({"test": "ucx"}, "test: is ucx, must be one of ucs, tension, brazilian, biaxial"),
-        (
-            {"test": "biaxial", "pressures": [1e6, -1.0]},
-            "--pressures: is 1e.06,-1, must be different",
-        ),
+        ({"test": "biaxial", "pressures": [1e6, -1.0]}, "--pressures: is 1e.06,-1, must be different"),
         ({"rate": 0.0}, "--rate: is 0, must be more than 0"),
     ],
 )
