@@ -58,9 +58,9 @@ class FacePairs(NamedTuple):
     opening: np.ndarray
 
 
-F: Any = namedtuple("F", ["along_x", "along_y", "apart", "apart_up", "end", "height", "closure", "rest"])(
-    *(np.uint64(row) for row in (0, 1, 2, 3, 4, 12, 14, 15))
-)
+_ROWS: list[Any] = [np.uint64(row) for row in (0, 1, 2, 3, 4, 12, 14, 15)]
+
+F: Any = namedtuple("F", ["along_x", "along_y", "apart", "apart_up", "end", "height", "closure", "rest"])(*_ROWS)
 """Rows of `JointFaces.frame`: pairs at the start, in a frame along the line and its normal.
 
 along_x, along_y : the line of the pair, between those of its faces. apart, apart_up : m, from the centre of the first
