@@ -3,8 +3,9 @@
 from numba import njit
 
 from dembound.kernels.common import FAST, U
+from dembound.kernels.tables.joints import F
 
-PAIRS, STEPS, EVENTS, NEEDED = range(4)
+PAIRS, STEPS, EVENTS, NEEDED, LAID_OUT = range(5)
 """Places in `JointFaces.counts`."""
 
 SLIGHT = 1e-5
@@ -12,16 +13,20 @@ SLIGHT = 1e-5
 
 
 @njit(**FAST)
-def note_event(joint, k, torn, x, y):
-    """Note at (x, y) m that pair k has lost its strength."""
-    number = joint.counts[EVENTS]
+def note_event(joint, k, torn, u):
+    """Note that pair k has lost its strength in the middle of its overlap, at displacements u (3, n)."""
+    number, f = joint.counts[EVENTS], joint.pairs.first[k]
+    i, arm, height = U(joint.disk[f]), joint.pairs.arm[k], joint.height[f]
+    tx, ty = joint.frame[F.along_x, k], joint.frame[F.along_y, k]
+    x = joint.centre[f, 0] + u[U(0), i] + tx * arm + ty * height
+    y = joint.centre[f, 1] + u[U(1), i] + ty * arm - tx * height
     if number < joint.events.shape[0]:
         joint.events[number, 0] = joint.counts[STEPS]
-        joint.events[number, 1] = joint.pairs.first[k]
+        joint.events[number, 1] = f
         joint.events[number, 2] = joint.pairs.second[k]
         joint.events[number, 3] = x
         joint.events[number, 4] = y
-        joint.events[number, 5] = 0.0 if torn else 1.0
+        joint.events[number, 5] = 0.0 if torn != 0 else 1.0
     joint.counts[EVENTS] = number + 1
 
 
@@ -37,7 +42,7 @@ def note_means(joint):
         f, g, length = U(pairs.first[k]), U(pairs.second[k]), pairs.length[k]
         if length > 0.0:
             part = joint.part[f]
-            closed = not joint.law.fails or pairs.intact[k] or pairs.pressure[k] > 0.0
+            closed = not joint.law.fails or pairs.intact[k] != 0 or pairs.pressure[k] > 0.0
             record[part, U(0)] += length
             record[part, U(1)] += length * (pairs.slip[k] - 0.5 * (joint.rest[f] + joint.rest[g]))
             record[part, U(2)] += length * pairs.opening[k]

@@ -30,7 +30,7 @@ def states_among(
         first, second = (saved[f"pair_{name}"][: saved["counts"][PAIRS]] for name in ("first", "second"))
         chosen = np.flatnonzero(left[first] & left[second])
         own = {"listed": saved["listed"][left], "ends": saved["ends"][left], "first": saved["first"][stays]}
-        own |= {"events": np.zeros((room, 6)), "counts": np.array([len(chosen), 0, 0, len(chosen)])}
+        own |= {"events": np.zeros((room, 6)), "counts": np.array([len(chosen), 0, 0, len(chosen), 0])}
         for name, empty in empty_pairs(room)._asdict().items():
             values = saved[f"pair_{name}"][chosen]
             empty[: len(chosen)] = number[values] if name in ("first", "second") else values

@@ -11,14 +11,19 @@ from dembound.disks.faces.found import Faces
 from dembound.disks.material.at_rest import StressAtRest, UnlikeStress
 from dembound.disks.material.packed_material import PackedMaterial
 from dembound.errors import RunError
-from dembound.kernels.joint_notes import EVENTS, NEEDED, PAIRS, STEPS
-from dembound.kernels.joints import list_faces, push_faces
+from dembound.kernels.compiler.lanes import LANES
+from dembound.kernels.joint_notes import EVENTS, LAID_OUT, NEEDED, PAIRS, STEPS
+from dembound.kernels.joint_pairs import list_faces
+from dembound.kernels.joints import push_faces
 from dembound.kernels.tables.joints import FacePairs, JointFaces, JointLaw
 from dembound.motion.part import Cracks, Tie
 from dembound.motion.state import Arrays, Layout
 
-ROOM = 8
-"""Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other."""
+ROOM = LANES
+"""Places for pairs per face: two to three are listed where each face of one side lies opposite some of the other.
+
+It makes their number a multiple of those that are computed at once.
+"""
 
 MARGIN = 0.25
 """By how much faces may lie apart that are listed as pairs, over the mean diameter."""
@@ -98,9 +103,11 @@ class JointTie(Tie):
             rest=shear / faces.stiffness[1],
             pairs=empty_pairs(room),
             spare=empty_pairs(room),
-            counts=np.zeros(4, dtype=np.int64),
+            frame=np.zeros((16, room)),
+            motion=np.zeros((8, LANES)),
+            pushes=np.zeros((4, LANES)),
+            counts=np.zeros(5, dtype=np.int64),
             listed=np.zeros((count, 2)),
-            now=np.zeros((count, 4)),
             gives=np.ascontiguousarray(gives[:, faces.disk].T),
             force=np.zeros((count, 3)),
             kick=np.zeros((count, 3)),
@@ -209,13 +216,9 @@ class JointTie(Tie):
         bundle, own, other = self._bundle, pairs.first, pairs.second
         along = bundle.along[own] + bundle.along[other]
         along /= np.hypot(*along.T)[:, None]
-        begin = bundle.now[own, :2]
-        whole, first, last = (
-            np.sum((place - begin) * along, axis=1)
-            for place in (bundle.now[own, 2:], bundle.now[other, :2], bundle.now[other, 2:])
-        )
         start, length = bundle.ends[own, :2], bundle.ends[own, 2:] - bundle.ends[own, :2]
-        parts = np.maximum(first, 0.0) / whole, np.minimum(last, whole) / whole
+        whole = np.sum(length * along, axis=1)
+        parts = pairs.begin / whole, (pairs.begin + pairs.length) / whole
         held = pairs.intact | self.faces.joint.is_linear
         state = np.where(held, HOLDS, np.where(pairs.slides, SLIDES, np.where(pairs.pressure > 0.0, CLOSED, OPEN)))
         return {
@@ -241,7 +244,8 @@ class JointTie(Tie):
         """The pairs that overlap."""
         pairs = self._bundle.pairs
         chosen = np.flatnonzero(pairs.length[: self._bundle.counts[PAIRS]] > 0.0)
-        return FacePairs(*(each[chosen] for each in pairs))
+        found = FacePairs(*(each[chosen] for each in pairs))
+        return found._replace(intact=found.intact > 0, slides=found.slides > 0)
 
     def take_cracks(self) -> Cracks:
         """The places that lost their strength since the last call, as cracks between the disks of two faces."""
@@ -288,6 +292,7 @@ class JointTie(Tie):
         """End the faces of some disks (k,): without length they overlap no more."""
         ended = np.isin(self.faces.disk, disks)
         self._bundle.ends[ended, 2:] = self._bundle.ends[ended, :2]
+        self._bundle.counts[LAID_OUT] = 0
 
     def saved_arrays(self) -> Arrays:
         """The pairs with their history, events not yet recorded, and the faces, of which some may have ended."""
@@ -303,6 +308,7 @@ class JointTie(Tie):
                 raise ValueError(f"{self.name}: {name} has the shape {saved[name].shape}, must have {values.shape}")
             values[...] = saved[name]
         bundle = self._bundle
+        bundle.counts[LAID_OUT] = 0
         if not (bundle.counts >= 0).all() or bundle.counts[PAIRS] > len(bundle.pairs.first):
             raise ValueError(f"{self.name}: has no {bundle.counts[PAIRS]} pairs")
         faces = np.concatenate([bundle.pairs.first, bundle.pairs.second])
@@ -318,10 +324,9 @@ class JointTie(Tie):
 
 def empty_pairs(room: int) -> FacePairs:
     """Places for pairs."""
-    whole, flags, values = np.int64, np.bool_, np.float64
+    whole, flags, values = np.int64, np.uint8, np.float64
     kinds: Mapping[str, type] = {"first": whole, "second": whole, "intact": flags, "slides": flags}
-    shapes = {"arm": (room, 2)}
-    return FacePairs(*(np.zeros(shapes.get(name, room), kinds.get(name, values)) for name in FacePairs._fields))
+    return FacePairs(*(np.zeros(room, kinds.get(name, values)) for name in FacePairs._fields))
 
 
 def _copied(bundle: JointFaces) -> JointFaces:
@@ -329,6 +334,6 @@ def _copied(bundle: JointFaces) -> JointFaces:
     pairs = FacePairs(*(each.copy() for each in bundle.pairs))
     own = {
         name: getattr(bundle, name).copy()
-        for name in ("counts", "listed", "now", "force", "lost", "events", "record", "first")
+        for name in ("frame", "counts", "listed", "force", "lost", "events", "record", "first")
     }
     return bundle._replace(pairs=pairs, **own)

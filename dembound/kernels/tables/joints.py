@@ -1,6 +1,7 @@
 """Arrays of joints: faces of disks on both sides of lines, and the pairs of faces that lie opposite each other."""
 
-from typing import NamedTuple
+from collections import namedtuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,12 +30,13 @@ class JointLaw(NamedTuple):
 class FacePairs(NamedTuple):
     """Pairs of faces that overlap or may soon, p places of which the first are in use; sorted by first, then second.
 
-    first, second : (p,) faces; kn, ks : (p,) Pa/m, their springs. intact : (p,) bool, whether the joint has its
-    strength there; slides : (p,) bool, in the last step. slip : (p,) m, shear displacement without stress. length :
+    first, second : (p,) faces; kn, ks : (p,) Pa/m, their springs. intact : (p,) uint8, whether the joint has its
+    strength there; slides : (p,) uint8, in the last step. slip : (p,) m, shear displacement without stress. length :
     (p,) m, overlap in the last step; pressure, shear, drag : (p,) Pa, its normal stress, positive if it pushes, its
     shear stress on the first face along its line, and the normal stress of the dashpot; bearing : (p,) Pa, the pressure
-    that friction counts. arm : (p, 2) m, from the foot of each disk's centre to the middle of the overlap along the
-    line. energy : (p,) J. opening : (p,) m, by which its faces have moved apart since the start.
+    that friction counts. arm, arm_2 : (p,) m, from the foot of both disks' centres to the middle of the overlap along
+    the line; begin : (p,) m, from the first end of the first face to the overlap. energy : (p,) J. opening : (p,) m, by
+    which its faces have moved apart since the start.
     """
 
     first: np.ndarray
@@ -49,9 +51,23 @@ class FacePairs(NamedTuple):
     shear: np.ndarray
     drag: np.ndarray
     arm: np.ndarray
+    arm_2: np.ndarray
+    begin: np.ndarray
     energy: np.ndarray
     bearing: np.ndarray
     opening: np.ndarray
+
+
+_ROWS: list[Any] = [np.uint64(row) for row in (0, 1, 2, 3, 4, 12, 14, 15)]
+
+F: Any = namedtuple("F", ["along_x", "along_y", "apart", "apart_up", "end", "height", "closure", "rest"])(*_ROWS)
+"""Rows of `JointFaces.frame`: pairs at the start, in a frame along the line and its normal.
+
+along_x, along_y : the line of the pair, between those of its faces. apart, apart_up : m, from the centre of the first
+disk to that of the second. end : m, of four ends, both of the first face, then of the second, from the centre of its
+disk; two rows each. height : m, of both centres from their faces, two rows. closure, rest : m, by which the pair is
+pressed in and sheared at the start.
+"""
 
 
 class JointFaces(NamedTuple):
@@ -61,9 +77,10 @@ class JointFaces(NamedTuple):
     line : (m,) theirs in the support table. centre : (m, 2), ends (m, 4) m, of the disk and x, y of both ends of the
     face at the start; along (m, 2) unit vector; height (m,) m, of the centre from the face; stiffness (2, m) Pa/m,
     along n and t, of two such faces; closure, rest (m,) m, by which the face is pressed in and sheared at the start.
-    pairs, spare : the pairs, and space to list them anew; counts (4,) int64 : pairs listed, steps done, events noted,
-    and the most pairs needed so far. listed : (m, 2) m, displacement of the disks at which they were listed. now :
-    (m, 4) m, ends in this step. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held or
+    pairs, spare : the pairs, and space to list them anew, for a multiple of eight; frame (16, p) : see `F`. motion,
+    pushes (8, 8), (4, 8) : work space of eight pairs. counts (5,) int64 : pairs listed, steps done, events noted, the
+    most pairs needed so far, and whether frames are those of the pairs listed. listed : (m, 2) m, displacement of the
+    disks at which they were listed. gives : (m, 3) 1/kg and 1/(kg·m²), of the disk of each face, 0 for what is held or
     prescribed. force, kick : (m, 3) N and N·m, N·s and N·m·s on it by springs and dashpots in the last step; lost (3,)
     J: friction, crack and closing. events : (k, 6) step, first and second face, x, y m, whether by shear, of places
     that lost their strength. record : (r, l, 7) of each line in the last r steps the overlap, m, and times it slip and
@@ -85,9 +102,11 @@ class JointFaces(NamedTuple):
     rest: np.ndarray
     pairs: FacePairs
     spare: FacePairs
+    frame: np.ndarray
+    motion: np.ndarray
+    pushes: np.ndarray
     counts: np.ndarray
     listed: np.ndarray
-    now: np.ndarray
     gives: np.ndarray
     force: np.ndarray
     kick: np.ndarray
