@@ -4,13 +4,12 @@ In such a zone beside a side forces at rest always have ground to act on.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import field_validator
 
-from dembound.boundaries.boundary import Boundary, Driven
-from dembound.boundaries.edge import Motion, axis_of_motion, normal_axis
-from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.edge import Edge, axis_of_motion, normal_axis
 from dembound.places import is_in_range
 from dembound.table import Box, quantity
 
@@ -125,96 +124,3 @@ def driven_components(boundary: Mapping[str, Boundary | None]) -> Iterator[tuple
         for motion in table.waves if table else ():
             if table and (axis := axis_of_motion(side, motion)) in table.prescribed(normal_axis(side)):
                 yield side, axis
-
-
-class Fixed(Wall):
-    """A rigid wall: its particles neither move nor turn; reflected velocities have the opposite sign."""
-
-    for_bars: ClassVar[bool] = True
-    for_static: ClassVar[bool] = True
-
-    type: Literal["fixed"]
-
-    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """All three components."""
-        return (0, 1, 2)
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Prescribe zero velocity."""
-        for component in range(3):
-            supports.add(self.part_of(edge).nodes, component, prescribed=True)
-
-
-class Roller(Wall):
-    """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
-
-    for_static: ClassVar[bool] = True
-
-    type: Literal["roller"]
-
-    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """The motion along the normal."""
-        return (normal_axis,)
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Prescribe zero velocity along the normal."""
-        supports.add(self.part_of(edge).nodes, edge.axis, prescribed=True)
-
-
-Component = Literal["normal", "shear"]
-"""Component of the motion of a side: along its normal, or across it."""
-
-MOTIONS: Mapping[Component, Motion] = {"normal": "p", "shear": "s"}
-"""Component -> the waves that move the side along it."""
-
-
-class Velocity(Holding, Driven):
-    """A rigid platen that moves with the given waves.
-
-    A held component without a wave does not move; one that is not held is free, and so is rotation: by default a grip,
-    with "normal" alone a smooth platen.
-    """
-
-    for_bars: ClassVar[bool] = True
-
-    type: Literal["velocity"]
-
-    hold: tuple[Component, ...] = quantity(("normal", "shear"), min_length=1)
-    """components of motion that it prescribes; others are free"""
-
-    def mistakes(self) -> Iterator[str]:
-        """Waves of components that it does not hold."""
-        yield from super().mistakes()
-        for part, motion in MOTIONS.items():
-            if part not in self.hold and motion in self.waves:
-                yield f"wave_{motion}: moves a component that hold does not name; add it there"
-
-    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Components of an end of a bar."""
-        yield from super().problems(side, tables)
-        if "bar" in tables and "hold" in self.model_fields_set:
-            yield f"boundary.{side}.hold: is for sides of disks; a bar moves only along its axis"
-
-    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
-        """The axes of the components that it holds."""
-        axes = {"normal": normal_axis, "shear": 1 - normal_axis}
-        return tuple(sorted({axes[component] for component in self.hold}))
-
-    def at_rest(self) -> Boundary:
-        """A rigid wall, or a smooth one."""
-        if set(self.hold) == set(MOTIONS):
-            return Fixed(type="fixed", within=self.within)
-        return Roller(type="roller", within=self.within) if "normal" in self.hold else super().at_rest()
-
-    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Prescribe v = wave(t) along each named direction and v = 0 along others that are held."""
-        nodes, held = self.part_of(edge).nodes, self.prescribed(edge.axis)
-        for component, name in enumerate(self.waves_by_axis(edge.axis)):
-            if component in held:
-                supports.add(
-                    nodes,
-                    component,
-                    drive=1.0 if name else 0.0,
-                    signal=waves[name].velocity if name else None,
-                    prescribed=True,
-                )

@@ -6,7 +6,8 @@ from itertools import zip_longest
 import numpy as np
 
 from dembound.boundaries import Boundary
-from dembound.boundaries.platen import Fixed, Roller
+from dembound.boundaries.fixed import Fixed
+from dembound.boundaries.roller import Roller
 from dembound.casefile.disks.model import DiskCase
 from dembound.disks.material.at_rest import AtRest, levels_of, stress_at_rest
 from dembound.disks.material.packed_material import PackedMaterial

@@ -28,7 +28,7 @@ from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.ground_waves import UnlikeWaves
 from dembound.disks.surroundings.layered_waves import Undisturbed
 from dembound.errors import CaseError
-from dembound.holes.shapes import Polygon
+from dembound.holes.polygon import Polygon
 from dembound.motion.scene import Between, Mean
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, columns_end, nearest_in_column

@@ -1,11 +1,13 @@
-"""Holes: the TOML table of each shape computes which positions lie in it.
+"""Holes: each file contains the TOML table of one shape and computes which positions lie in it.
 
-A new shape is a class, in shapes.py or a file of its own, and its name in `TYPES`; another package registers its own,
-see casefile/types.py.
+A new shape is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
+from dembound.holes.circle import Circle
+from dembound.holes.ellipse import Ellipse
 from dembound.holes.hole import Hole
-from dembound.holes.shapes import Circle, Ellipse, Polygon, Rectangle
+from dembound.holes.polygon import Polygon
+from dembound.holes.rectangle import Rectangle
 
 TYPES = (Circle, Ellipse, Rectangle, Polygon)
 """All shapes."""

@@ -9,7 +9,7 @@ import numpy as np
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.edge import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.boundaries.periodic import Periodic
-from dembound.boundaries.platen import Velocity
+from dembound.boundaries.velocity import Velocity
 from dembound.casefile.disks.load import Monitor
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.types import linear_law
@@ -20,7 +20,7 @@ from dembound.disks.small_motion import small_motion
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.motion.simulation import Simulation
-from dembound.waves.pulses import Cosine
+from dembound.waves.cosine import Cosine
 
 PULSE = "calibration"
 STRIP = 0.35

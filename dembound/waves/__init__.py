@@ -1,13 +1,15 @@
-"""Waves: named velocity histories that drive sides, or time factors of loads.
+"""Waves: named velocity histories that drive sides, or time factors of loads, one type per file.
 
-A new type is a class in a file of its own, and its name in `TYPES`; another package registers its own, see
-casefile/types.py.
+A new type is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.waves.constant import Constant
+from dembound.waves.cosine import Cosine
 from dembound.waves.file_wave import FileWave
-from dembound.waves.pulses import Cosine, CubicSpline, Ricker, Triangle
+from dembound.waves.ricker import Ricker
 from dembound.waves.sine_burst import SineBurst
+from dembound.waves.spline import CubicSpline
+from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 
 TYPES = (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, FileWave)

@@ -49,7 +49,7 @@ from dembound.formulas.bars.rods import Window
 from dembound.formulas.cause import GRID, QUANTITIES, SIDES, STEP, Cause, Causes
 from dembound.formulas.history import LEAST, History, Motions, along
 from dembound.kinds.bar.kind import SPALL_PLACE, SPALL_TIME
-from dembound.waves.pulses import Triangle
+from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 from dembound.words import percent
 

@@ -25,7 +25,7 @@ from dembound.disks.surroundings.near_fields import signals_of
 from dembound.errors import CaseError
 from dembound.formulas.disks.reflections import Reflections
 from dembound.holes.hole import Hole
-from dembound.holes.shapes import Rectangle
+from dembound.holes.rectangle import Rectangle
 from dembound.motion.endings import monitored
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.packings.base import Packing

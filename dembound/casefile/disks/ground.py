@@ -15,7 +15,7 @@ from dembound.casefile.disks.surface import air_above, points_in_file
 from dembound.casefile.messages import choices, corners, counted, numbered, show
 from dembound.casefile.types import LAWS
 from dembound.holes.hole import Floor, Hole, floor_beside
-from dembound.holes.shapes import Points, Polygon
+from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Extent, Packing
 from dembound.table import Box, Table, quantity
 

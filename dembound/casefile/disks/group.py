@@ -14,7 +14,7 @@ from dembound.casefile.disks.targets import with_history
 from dembound.casefile.messages import corners, numbered
 from dembound.casefile.types import LAWS
 from dembound.holes import Polygon, Rectangle
-from dembound.holes.shapes import Points
+from dembound.holes.polygon import Points
 from dembound.places import includes
 from dembound.table import Box, FileName, quantity
 

@@ -11,7 +11,7 @@ from pydantic import PrivateAttr, field_validator
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.messages import numbered
 from dembound.casefile.types import LAWS
-from dembound.holes.shapes import Points
+from dembound.holes.polygon import Points
 from dembound.table import FileName, Table, quantity
 
 KINK = 10.0

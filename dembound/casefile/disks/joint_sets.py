@@ -12,7 +12,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks.joint import APART, Joint, JointKeys, a_line, distance_to, goes_on
 from dembound.casefile.messages import numbered
 from dembound.holes.hole import Hole
-from dembound.holes.shapes import Points
+from dembound.holes.polygon import Points
 from dembound.table import LARGEST_WHOLE, Box, quantity
 
 MOST_LINES = 1000

@@ -14,7 +14,7 @@ from dembound.casefile.disks.load import Monitor, is_no_twin
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import MOST_MONITORS
 from dembound.holes.hole import Hole, surface_below
-from dembound.holes.shapes import Points
+from dembound.holes.polygon import Points
 from dembound.packings.base import TYPED, Packing
 from dembound.table import FileName, Table, quantity
 

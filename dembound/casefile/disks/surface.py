@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.boundaries.boundary import Boundary
-from dembound.holes.shapes import Points, Polygon
+from dembound.holes.polygon import Points, Polygon
 from dembound.packings.base import TYPED, Packing
 from dembound.table import Box
 from dembound.waves.file_wave import columns_in, header_of, read_text

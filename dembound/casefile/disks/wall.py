@@ -11,7 +11,7 @@ from dembound.casefile.disks.surface import points_in_file
 from dembound.casefile.disks.targets import with_history
 from dembound.casefile.messages import counted, numbered
 from dembound.casefile.types import LAWS
-from dembound.holes.shapes import Points
+from dembound.holes.polygon import Points
 from dembound.table import FileName, Table, quantity
 from dembound.waves import Wave
 

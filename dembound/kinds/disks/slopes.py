@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.boundaries.platen import Roller
+from dembound.boundaries.roller import Roller
 from dembound.casefile.disks import DiskCase
 from dembound.disks.material.packing_waves import slowest_speed
 from dembound.disks.scene import DiskScene

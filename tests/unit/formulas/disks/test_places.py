@@ -16,7 +16,7 @@ from dembound.formulas.disks import near_disks
 from dembound.formulas.disks.near_disks import BETWEEN, CREEP, DARK, LIT, OF_WAVES, SHORT, wall_errors
 from dembound.formulas.disks.places import NINE, middle_of_loads, weights_at
 from dembound.holes import Circle, Rectangle
-from dembound.holes.shapes import STRAIGHT
+from dembound.holes.rectangle import STRAIGHT
 from dembound.kinds import loads
 from dembound.packings import Square
 
