@@ -233,8 +233,8 @@ class Drivable(Boundary):
     Positive velocities point along +x and +y on every side. Both waves may be given together.
     """
 
-    wave_p: str | None = quantity(None, help="name of the wave that moves along the side's normal")
-    wave_s: str | None = quantity(None, help="name of the wave that moves across the side's normal")
+    wave_p: str | None = quantity(None, help="wave that moves along the side's normal")
+    wave_s: str | None = quantity(None, help="wave that moves across the side's normal")
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Waves along a direction in which nothing can move."""

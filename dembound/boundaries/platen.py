@@ -27,7 +27,7 @@ class Keeping(Boundary):
         None,
         means="count",
         help="disks from the side, counted by bonds, whose bonds do not break; absent: "
-        f"{INTACT} where forces of the static stage act on a side that stands for ground beyond, else 0",
+        f"{INTACT} where forces of the static stage act on a side that stands for ground beyond",
         ge=0,
         le=MOST_INTACT,
     )
@@ -46,13 +46,12 @@ class Holding(Keeping):
         None,
         unit="m",
         means="place",
-        help="range [x0, x1] of a bottom or top, [y0, y1] of a left "
-        "or right side in which it holds particles, others are free; absent: all",
+        help="range [x0, x1] or [y0, y1] of the side in which it holds particles; absent: all",
     )
 
     reactions: Literal["kept", "none"] = quantity(
         "kept",
-        help='of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away',
+        help='of a static side: "kept", constant forces in the run; "none", the support is taken away',
     )
 
     until: float | None = quantity(

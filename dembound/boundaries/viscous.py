@@ -59,7 +59,7 @@ class Dashpots(Keeping):
         help="factor β of the dashpots across the side's normal",
     )
     rock: Rock | None = quantity(
-        None, help="rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"
+        None, help="rock beyond the side: density, p_wave_speed and s_wave_speed; gives both β"
     )
     half_mass: bool = quantity(False, help="the particles are half cells; sides of disks in one row, not free_field")
 
@@ -142,9 +142,8 @@ class BearingDashpots(Dashpots):
 
     bearing: bool | Bearing | None = quantity(
         None,
-        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which "
-        "bear what forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has "
-        "an intact zone",
+        help="whether a bottom or free-field side has springs on the motion relative to the ground beyond; or a "
+        "table of their alpha_n and alpha_s; absent: where it has an intact zone",
     )
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:

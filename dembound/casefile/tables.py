@@ -75,8 +75,8 @@ class Run(Table):
     )
     until: Literal["duration", "silent", "peak", "rest"] = quantity(
         "duration",
-        help='when it ends: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a '
-        'wave moves have passed their peaks; "rest": of disks, what fell is at rest',
+        help='its end: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a '
+        'wave moves have passed their peaks; "rest": disks that fell are at rest',
     )
     silent_level: float = quantity(
         1e-3,
@@ -108,8 +108,7 @@ class Run(Table):
     rest_for: float | None = quantity(
         None,
         unit="s",
-        help="time for which the kinetic energy must be below 1e-3 of that of the fall; absent: that of a free fall "
-        "from the height of the body",
+        help="time for which it must be at rest; absent: a free fall from the height of the body",
         gt=0.0,
     )
 
@@ -166,7 +165,7 @@ class Output(Table):
     stress: bool = quantity(False, help="stress of every particle in snapshots")
     contacts: bool = quantity(False, help="forces of every contact and bond in snapshots")
     paraview: ParaView = quantity(
-        "vtu", help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none"'
+        "vtu", help='snapshots for ParaView: "vtu", a file for each; "vtkhdf", one of all; "both"; "none"'
     )
     peaks: bool = quantity(False, help="largest speed of every particle in the run")
     load_factor: bool = quantity(False, help="find the factor of the waves up to which the elastic law holds")
@@ -216,7 +215,7 @@ class Sweep(Table):
 
     vary: Vary = quantity({}, help='key -> list of values, or range such as "1:20" or, with a step, "0:100:25"')
     together: bool = quantity(
-        False, help="the first values of all keys are one member, the second ones the next; else all combinations"
+        False, help="first values of all keys are one member, second ones the next; else all combinations"
     )
     action: Action = quantity("run", help="action for every member")
     method: Method = quantity("impedance", help="how β is calibrated")

@@ -66,8 +66,7 @@ def boundary(
         typer.Option(
             "--type",
             metavar="TYPE",
-            help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'. May be "
-            "repeated.",
+            help="Type of side to compare, or its table. May be repeated.",
         ),
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
@@ -79,7 +78,7 @@ def boundary(
     longest: Annotated[
         float,
         typer.Option(
-            "--longest", min=0.0, metavar="SECONDS", help="CPU seconds, about, within which frequencies are measured."
+            "--longest", min=0.0, metavar="SECONDS", help="CPU seconds within which frequencies are measured."
         ),
     ] = LONGEST,
     changes: Settings = None,

@@ -44,14 +44,12 @@ WaveType = Literal["p", "s"]
 def calibrate_sides(
     case: OneCase,
     *,
-    boundary: Annotated[
-        Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
-    ] = None,
+    boundary: Annotated[Side | None, typer.Option("--boundary", "-b", help="Side to calibrate, without --all.")] = None,
     every: Annotated[
         bool, typer.Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
     ] = False,
     wave: Annotated[
-        WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
+        WaveType | None, typer.Option(help="Wave; by default that which runs towards this side, else P.")
     ] = None,
     how: Calibrating,
     output: Output = Path("results"),

@@ -40,8 +40,8 @@ def chart(
         ChartReference | None,
         typer.Option(
             metavar="REFERENCE",
-            help="exact, a solution; extended, a scene so large that nothing returns; finer, of bars; finest, the "
-            "choice with the most nodes times steps. By default the first that the case allows.",
+            help="exact; extended, a scene so large that nothing returns; finer, of bars; finest, the choice with "
+            "the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
@@ -55,7 +55,7 @@ def chart(
         int | None,
         typer.Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's."),
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Only choices that the chart does not have.")] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 def exact(
     path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
-        str | None, typer.Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
+        str | None, typer.Option(help="lamb, cavity, garvin or scattering; by default that which holds longest.")
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -195,10 +195,10 @@ def stability(
     full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
     strength: Annotated[
         bool,
-        typer.Option("--strength", help="How near the ground is to failure under its weight, not the step."),
+        typer.Option("--strength", help="How near the ground is to failure, not the step."),
     ] = False,
     tolerance: Annotated[
-        float | None, typer.Option(help="Relative width of the brackets of --strength; by default 0.02.")
+        float | None, typer.Option(help="Relative width of brackets of --strength; by default 0.02.")
     ] = None,
     output: Annotated[
         Path | None,

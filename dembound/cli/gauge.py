@@ -43,11 +43,9 @@ class EvaluationOptions:
     ] = None
     estimate: Annotated[
         bool,
-        typer.Option("--estimate", help="Speed and attenuation from tension peaks, though results have them."),
+        typer.Option("--estimate", help="Speed and attenuation from tension peaks, also of results."),
     ] = False
-    peaks: Annotated[
-        int | None, typer.Option(help="Number of first tension peaks for speed and attenuation.", min=2)
-    ] = None
+    peaks: Annotated[int | None, typer.Option(help="Tension peaks for speed and attenuation.", min=2)] = None
     pulse_end: Annotated[
         float | None, typer.Option(help="When the incident pulse has passed (s); by default when it returns.")
     ] = None
@@ -159,7 +157,7 @@ def _error(error: float) -> str:
 
 Window = Annotated[
     tuple[float, float] | None,
-    _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found."),
+    _of_pulses(metavar="FROM TO", help="Of this pulse (s); by default found."),
 ]
 Column = Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Its column, or monitor of results.")]
 

@@ -98,7 +98,7 @@ Component = Literal["x", "y", "both", "rotation"]
 """Components of the monitors' motion."""
 
 
-CurveTable = Annotated[Path | None, typer.Option("--table", help="Table of the curves (CSV).", callback=writable)]
+CurveTable = Annotated[Path | None, typer.Option("--table", help="Curves (CSV).", callback=writable)]
 QuantityOfMonitors = Annotated[
     Quantity | None,
     typer.Option(
@@ -149,9 +149,7 @@ class Plotted:
     monitor: Monitors = None
     boundary: Annotated[
         Side | None,
-        typer.Option(
-            help="This side's diameters and peak velocities, with --quantity stress or displacement its mean."
-        ),
+        typer.Option(help="This side's peak velocities, with --quantity stress or displacement its mean."),
     ] = None
     energy: Annotated[bool, typer.Option("--energy", help="The energy ledger of one run.")] = False
     field: Annotated[
@@ -163,9 +161,7 @@ class Plotted:
     ] = None
     snapshot: Annotated[
         int | None,
-        typer.Option(
-            help="Number of the snapshot of --field, −1 the last; by default that of the largest values, of a bar all."
-        ),
+        typer.Option(help="Number of the snapshot, −1 the last; by default that of the largest values, of a bar all."),
     ] = None
     exaggerate: Exaggerated = None
     table: Annotated[

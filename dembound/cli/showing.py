@@ -129,9 +129,7 @@ class SignalsShown:
     quantity: QuantityOfMonitors = None
     component: ComponentOfMotion = None
     monitor: Monitors = None
-    reference: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Monitor that is the input, of transfer or surface.")
-    ] = None
+    reference: Annotated[str | None, typer.Option(metavar="NAME", help="Input of transfer or surface.")] = None
 
     def problems(self, show: Shown, count: int) -> Iterator[str]:
         """Options that have no effect on what is shown, for a number of results."""
@@ -188,9 +186,9 @@ def signals(
         Shown,
         typer.Option(
             metavar="WHAT",
-            help="fourier: spectra; transfer: their ratios to --reference or to free-field twins; response: spectra "
-            "with 5 % damping; section: histories at their distances; hodograph; surface: peaks, spectra and end of "
-            "the motion along the surface over the free field's.",
+            help="fourier; transfer: ratios to --reference or to free-field twins; response: with 5 % damping; "
+            "section: histories at their distances; hodograph; surface: motion along the surface over the free "
+            "field's.",
         ),
     ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),

@@ -23,9 +23,7 @@ app.add_typer(cases, name="cases", rich_help_panel=MORE)
 
 @app.command("new")
 def new(
-    path: Annotated[
-        Path, typer.Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
-    ] = Path("case.toml"),
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="File to write.")] = Path("case.toml"),
     start: Annotated[
         str | None,
         typer.Option(
@@ -128,7 +126,7 @@ def copy(
         str,
         typer.Argument(
             metavar="NAME",
-            help="A case, as `dembound cases` lists it, or a group such as zhou2018.",
+            help="A case, or a group such as zhou2018.",
             autocompletion=lambda: [*shipped.groups(), *shipped.names()],
         ),
     ],

@@ -62,16 +62,14 @@ def sweep(
     vary: Vary = None,
     together: Annotated[
         bool | None,
-        typer.Option(
-            "--together/--product", help="First values of all keys together, then the second ones, and so on."
-        ),
+        typer.Option("--together/--product", help="First values of all keys together, then the second ones."),
     ] = None,
     action: Annotated[
         SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
     method: Annotated[
         Method | None,
-        typer.Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`."),
+        typer.Option(metavar="METHOD", help="Method of calibration."),
     ] = None,
     processes: Annotated[
         int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
@@ -274,7 +272,7 @@ def respond(
         list[str],
         typer.Argument(
             metavar="RECORD...",
-            help="Text files of time (s) and velocity (m/s); of a library with several inputs INPUT=FILE,INPUT=FILE.",
+            help="Text files of time (s) and velocity (m/s); of several inputs INPUT=FILE,INPUT=FILE.",
         ),
     ],
     output: Output = Path("results"),
@@ -283,8 +281,7 @@ def respond(
         typer.Option(
             "--load-factor",
             metavar="MONITOR,MONITOR",
-            help="Print the load factor of each record at the contact between the disks of two monitors. May be "
-            "repeated.",
+            help="Print load factors at the contact between the disks of two monitors. May be repeated.",
         ),
     ] = None,
 ) -> None:

@@ -60,8 +60,8 @@ class ProcessingOptions:
         Baseline | None,
         _step(
             metavar="KIND",
-            help="mean, before the motion; linear, a fitted line; zero-velocity: the mean, then the velocity left at "
-            "the end; none. By default mean.",
+            help="mean, before the motion; linear; zero-velocity: the mean, then the velocity left at the end; none. "
+            "By default mean.",
         ),
     ] = None
     taper: Annotated[
@@ -101,11 +101,11 @@ class ProcessingOptions:
 class ReadingOptions:
     """What is known about a file beside its header."""
 
-    unit: Annotated[str | None, _given(help="Unit of the values, e.g. g, cm/s² or m/s; replaces the file's.")] = None
+    unit: Annotated[str | None, _given(help="Unit of the values, e.g. g, cm/s² or m/s.")] = None
     time_step: Annotated[float | None, _given("--dt", metavar="X", help="Time step (s).")] = None
     columns: Annotated[
         str | None,
-        _given(metavar="NAME,NAME,…", help='Columns of a text in their order, as time,NS,EW; "-" leaves one out.'),
+        _given(metavar="NAME,NAME,…", help='Columns of a text, as time,NS,EW; "-" leaves one out.'),
     ] = None
     series: Annotated[bool, _given("--series", help="Take all numbers, line by line, as one channel.")] = False
     skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning of a text.")] = 0
@@ -124,30 +124,27 @@ class GroundOptions:
 
     deconvolve: Annotated[
         Path | None,
-        typer.Option(
-            metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."
-        ),
+        typer.Option(metavar="CASE", help="Write the incident wave below the surface of this case."),
     ] = None
     kinds: Annotated[
         list[Kind] | None,
         typer.Option(
             "--as",
-            help="Kind of wave of each component in --deconvolve; by default the case's only one.",
+            help="Wave of each component in --deconvolve; by default the case's only one.",
         ),
     ] = None
     damping: Annotated[
         Damping,
         typer.Option(
             metavar="DAMPING",
-            help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q), as in equivalent-linear programs; or constant_q, "
-            "causal.",
+            help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q); or constant_q, causal.",
         ),
     ] = "as_run"
     transfer: Annotated[
         Path | None,
         typer.Option(
             metavar="NAME.png",
-            help="Transfer functions of the ground in --deconvolve (PNG and CSV).",
+            help="Transfer functions of the ground (PNG and CSV).",
             callback=png,
         ),
     ] = None
@@ -202,7 +199,7 @@ def wave(
             "--output",
             "-o",
             metavar="NAME.csv",
-            help="Wave, of several components with their names appended; by default FILE_velocity.csv.",
+            help="Wave; names of components are appended; by default FILE_velocity.csv.",
             callback=_csv,
         ),
     ] = None,

@@ -26,16 +26,15 @@ WALL = 0.4
 class Hole(Table, ABC):
     """An area without particles: particles centred in it, and those it separates from the body, are removed.
 
-    A particle on its outline remains. A hole that keeps what is "inside" is the shape of a sample: the particles
-    outside are removed, and the sides of the scene are those of the sample.
+    One that keeps what is "inside" is the shape of a sample, whose sides are those of the scene.
     """
 
     type: str
     name: FileName = quantity(..., help="name in loads and messages")
     stage: Literal["before", "after", "run"] = quantity(
         "before",
-        help='"before": the body is built with the hole; "after": excavated after the static stage, which then goes '
-        'on; "run": excavated at a time of the run',
+        help='"before": built with the body; "after": excavated after the static stage, which then goes on; '
+        '"run": at a time of the run',
     )
     time: float | None = quantity(
         None, unit="s", help='time of the run at which its disks vanish, with stage = "run"', ge=0.0

@@ -186,7 +186,7 @@ class DensePacking(Packing):
         None,
         unit="Pa",
         means="stress",
-        help="pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
+        help="pressure of packing, 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it",
         gt=0.0,
     )
     bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts, too", ge=0.0)

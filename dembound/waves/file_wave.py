@@ -57,17 +57,16 @@ class FileWave(Wave):
     type: Literal["file"]
     path: str = quantity(
         ...,
-        help="text file, relative to the folder of the case, of time (s) and velocity (m/s) or the factor of a load; "
-        "separated by blanks or semicolons, in a .csv file by commas",
+        help="text file of time (s) and velocity (m/s) or the factor of a load, in columns by blanks or semicolons, "
+        "in a .csv file commas",
         min_length=1,
     )
     scale: NonZero = quantity(1.0, means="factor", help="factor of the file's values")
 
     interpolation: Literal["band_limited", "lines"] | None = quantity(
         None,
-        help='"lines" between samples, or the "band_limited" function through even samples, with frequencies up to 0.4 '
-        "of the sampling rate; absent: band_limited for a record (20 even samples, 6 changes of sign, ends within 2 % "
-        "of the peak)",
+        help='"lines", or the "band_limited" function, up to 0.4 of the sampling rate; absent: band_limited for a '
+        "record (20 even samples, 6 changes of sign, ends within 2 % of the peak)",
     )
 
     _samples: Polyline = PrivateAttr()

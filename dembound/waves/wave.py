@@ -89,7 +89,7 @@ NonZero = Annotated[float, AfterValidator(_not_zero)]
 class Wave(Table, ABC):
     """A velocity history, zero before `start`; as the factor of a load its values are pure numbers.
 
-    Of an outcrop it is that of the incident wave, half as large as given; of motion within the ground as given.
+    Of an outcrop half enters.
 
     Attributes
     ----------
@@ -104,8 +104,8 @@ class Wave(Table, ABC):
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
     motion: Literal["incident", "outcrop", "within"] | None = quantity(
         None,
-        help='what moves so: the "incident" wave; a free "outcrop" of the rock, twice as '
-        'fast; the ground at the side, "within"; absent: incident, at sides of prescribed velocity within',
+        help='what moves so: the "incident" wave; a free "outcrop" of the rock; the ground at the side, "within"; '
+        "absent: incident, at sides of prescribed velocity within",
     )
 
     @property

@@ -86,8 +86,7 @@ ROUNDING = 1e-9
 class Bar(Table):
     """A straight bar that moves along its axis, with nodes at x = 0, Δx, … L, and its material.
 
-    The two nodes at the ends have half a volume. The strength is given by the stress or the stretch at which a bond
-    breaks, s₀ = σ_t/E; without one nothing breaks.
+    The two nodes at the ends have half a volume. Without a strength or critical stretch nothing breaks.
 
     A bar with ranges is a row of uniform bars, for which its own keys are defaults.
     """
@@ -96,7 +95,7 @@ class Bar(Table):
         None,
         unit="m",
         means="length",
-        help="length L; with ranges it is that of all with their gaps, and may be left out",
+        help="length L; with ranges it may be left out",
         gt=0.0,
     )
     spacing: float = quantity(
@@ -134,11 +133,11 @@ class Bar(Table):
         None,
         unit="Pa",
         means="strength",
-        help="rise of the strength for a tenfold strain rate, within strength_rates; needs fracture_energy",
+        help="rise of the strength for a tenfold strain rate; needs fracture_energy",
         gt=0.0,
     )
     strength_rates: tuple[float, float] | None = quantity(
-        None, unit="1/s", help="strain rates [slowest, fastest] between which the strength rises; below it is strength"
+        None, unit="1/s", help="strain rates [slowest, fastest] between which it rises"
     )
     attenuation: float = quantity(
         0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0

@@ -27,8 +27,7 @@ from dembound.table import FileName, Table, quantity
 class BarLoad(Table):
     """A pressure on one end of a bar, on its last node or spread over its last few in proportion to their volume.
 
-    A wave's values, taken as pure numbers, are the time factor. Coarse peridynamic bars need a load on several nodes:
-    on one node it breaks them.
+    Coarse peridynamic bars need a load on several nodes: on one node it breaks them.
     """
 
     name: FileName = quantity(..., help="name in messages and results")
@@ -39,7 +38,7 @@ class BarLoad(Table):
     nodes: int = quantity(
         1, means="count", help="number of nodes it is spread over, from the end inwards", ge=1, le=MOST_CELLS + 1
     )
-    wave: str = quantity(..., help="name of the wave that is the time factor")
+    wave: str = quantity(..., help="wave that is the time factor")
 
 
 class BarMonitor(Table):

@@ -33,15 +33,15 @@ class Ground(Table):
         None,
         unit="m",
         means="length",
-        help="width and height, whole bricks high; absent: the disks fill all of the ground",
+        help="width and height, whole bricks high; absent: that of the disks",
     )
     origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place", help="lower left corner of the ground")
     surface: Points | str | None = quantity(
         None,
         unit="m",
         means="place",
-        help="free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the "
-        "folder of the case; level over four diameters at the sides of the disks; absent: the top of the disks",
+        help="free surface from left to right: points [[x, y], …], or a text file of x and y; level over four "
+        "diameters at the sides of the disks; absent: their top",
     )
     meet: float | None = quantity(
         None, unit="m", means="place", help='x of the vertical plane between layers of side "left" and "right"'

@@ -34,25 +34,23 @@ MOST = 32
 class Group(Differing):
     """The disks of a part of the ground, with strengths, friction or moduli of their own.
 
-    Absent keys are those of the ground there; of groups that overlap, those of the later one hold. Contacts and bonds
-    across its border have the smaller friction and strengths of both sides, and their springs in series. With `time`
-    its friction and strengths hold from then on.
+    Absent keys are those of the ground there; of groups that overlap, those of the later one hold.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the group in messages and pictures")
+    name: FileName = quantity(..., unit="1", help="name in messages and pictures")
     region: Box | None = quantity(
-        None, unit="m", means="place", help="rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"
+        None, unit="m", means="place", help="rectangle [x0, y0, x1, y1] of its disks; or points"
     )
     points: Points | None = quantity(
         None,
         unit="m",
         means="place",
-        help="corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region",
+        help="corners [[x, y], …] of a polygon; or region",
     )
     time: float | None = quantity(
         None,
         unit="s",
-        help="time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always",
+        help="time of the run from which on its friction and strengths hold; absent: always",
         ge=0.0,
     )
     p_wave_speed: float | None = as_in_material("p_wave_speed")

@@ -129,7 +129,7 @@ class IncidentWave(Table):
         gt=-90.0,
         lt=90.0,
     )
-    wave: str = quantity(..., unit="1", help="name of the wave whose velocity it has")
+    wave: str = quantity(..., unit="1", help="wave whose velocity it has")
     point: tuple[float, float] | None = quantity(
         None,
         unit="m",

@@ -36,9 +36,7 @@ STRENGTH_KEYS = ("ten", "coh")
 class JointKeys(Table):
     """The name of a joint, or of a set, and the constants of its faces."""
 
-    name: FileName = quantity(
-        ..., unit="1", help="name of the joint in messages and results; of a set without the numbers"
-    )
+    name: FileName = quantity(..., unit="1", help="name; of a set without the numbers")
     kn: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="normal stiffness per area", gt=0.0)
     ks: float = quantity(..., unit="Pa/m", means="stiffness of a joint", help="shear stiffness per area", gt=0.0)
     fric: float | None = quantity(

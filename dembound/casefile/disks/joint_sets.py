@@ -33,23 +33,20 @@ OF_SETS = ("spacing", "persistence", "trace", "region", "seed")
 class JointTable(JointKeys):
     """A plane of weakness: a line whose two faces are joined by springs along all of it; or a set of parallel lines.
 
-    Without `fric` the faces neither part nor slide. With it they part where they are pulled by more than `ten`, and
-    slide where the shear stress reaches `coh` + `fric` × the pressure; both strengths are then lost. A set `NAME`
-    becomes the joints `NAME_1`, `NAME_2` and so on. A line that crosses one of an earlier table ends at it on both
-    sides; from all others lines stay three diameters away.
+    A set `NAME` becomes the joints `NAME_1`, `NAME_2` and so on.
     """
 
     points: Points | None = quantity(
         None,
         unit="m",
         means="place",
-        help="the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip",
+        help="the line: points [[x, y], …], with kinks of up to 10°; or give dip",
     )
     dip: float | None = quantity(
         None,
         unit="degrees",
         means="direction",
-        help="of a set: the angle below the horizontal at which its lines fall towards +x",
+        help="of a set: angle below the horizontal, falling towards +x",
         ge=-90.0,
         le=90.0,
     )
@@ -68,14 +65,14 @@ class JointTable(JointKeys):
         None,
         unit="m",
         means="length",
-        help="mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them",
+        help="mean length of the cuts",
         gt=0.0,
     )
     region: Box | Points | None = quantity(
         None,
         unit="m",
         means="place",
-        help="where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere",
+        help="where a set is: [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere",
     )
     seed: int = quantity(0, unit="1", means="count", help="seed of the places of a set", ge=0, le=LARGEST_WHOLE)
 

@@ -55,8 +55,8 @@ class Differing(Table):
 class Layer(Differing):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
-    Absent keys are those of [material]. A layer that gives one of the keys for stiffness (wave speeds, targets, `emod`
-    and `pb_emod`) takes none of them from there. Where every layer gives them or the density, [material] need not.
+    Absent keys are those of [material], but none for stiffness (wave speeds, targets, `emod` and `pb_emod`) where the
+    layer gives one.
     """
 
     name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
@@ -254,7 +254,7 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="count",
-        help="elements between the particles and those that absorb; absent: 1, more under lasting loads",
+        help="elements before those that absorb; absent: 1, more under lasting loads",
         ge=1,
         le=MOST_ELEMENTS,
     )
@@ -262,7 +262,7 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="count",
-        help="elements that absorb, one behind the other, five wider ones more beside layers; absent: from accuracy",
+        help="elements that absorb, one behind the other; absent: from accuracy",
         ge=2,
         le=MOST_ELEMENTS,
     )
@@ -270,7 +270,7 @@ class OutsideTable(Table):
         None,
         unit="1",
         means="share",
-        help="R0, amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10",
+        help="R0, what a P wave keeps through the layers and back; absent: accuracy/10",
         gt=0.0,
         lt=1.0,
     )

@@ -23,18 +23,17 @@ class Load(Table):
 
     A force acts on one particle or on those of a rectangle, in proportion to their area; on the free surface of a
     continuum it is a uniform traction. An acceleration acts on the same or, without a place, on all particles. A
-    pressure acts in a hole, or on sides as by a membrane through the centres of their outer particles, which it
-    follows, except where a boundary of the run prescribes the motion.
+    pressure acts in a hole, or on sides as by a membrane.
 
     A wave's values, taken as pure numbers, are the time factor; without one the load is steady and acts from the static
     stage on.
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
+    name: FileName = quantity(..., unit="1", help="name in messages and results")
     force: Vector | None = quantity(
         None,
         unit="N/m",
-        help="force [fx, fy] on all its particles together; needs position or region",
+        help="force [fx, fy] on all of them; needs position or region",
     )
     acceleration: Vector | None = quantity(None, unit="m/s²", help="force [ax, ay] per mass of each particle")
     position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")
@@ -55,11 +54,9 @@ class Load(Table):
         None, unit="1", help="sides on which a steady pressure acts, as round a sample", min_length=1
     )
     on: Literal["outline", "bonds"] = quantity(
-        "outline", unit="1", help="where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"
+        "outline", unit="1", help="where a pressure acts: on the true outline, or on the bonds that it cuts"
     )
-    wave: str | None = quantity(
-        None, unit="1", help="name of the wave that is the time factor; absent: steady, from the static stage on"
-    )
+    wave: str | None = quantity(None, unit="1", help="wave that is the time factor; absent: steady")
 
     @property
     def key(self) -> str:
@@ -200,7 +197,7 @@ class Monitor(Table):
         ...,
         unit="m",
         means="place",
-        help="where; between equally near particles the lowest is taken, of these the leftmost",
+        help="where; of equally near particles the lowest, of these the leftmost",
     )
     points: tuple[tuple[float, float], ...] | None = quantity(
         None, unit="m", means="place", help="corners of a polygon, of whose particles the mean is recorded"

@@ -36,8 +36,8 @@ HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS, "dp_on"
 class MaterialTable(Table):
     """Density, and contacts and bonds by PFC's names; stiffness is given, or follows from wave speeds or targets.
 
-    Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds of the body: moduli and `kratio` =
-    `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
+    Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds: moduli and `kratio` = `pb_kratio` are
+    found for them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
     `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
     "linearpbond" is PFC's, and alone has `locked_in`, `geometry` and `elastic_start`. Strengths are for it and for
     `output.load_factor`, and `rr_fric` for it. Under "hertz" stiffness follows from `hz_shear`, `hz_poiss` and the
@@ -53,7 +53,7 @@ class MaterialTable(Table):
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
-        help='body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
+        help='body with this speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x',
     )
     contact_share: float = quantity(
         0.5,
@@ -67,7 +67,7 @@ class MaterialTable(Table):
         None,
         unit="m/s",
         means="wave speed",
-        help="S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own",
+        help="S-wave speed; beside emod and pb_emod of the boundaries only; absent: the packing's own",
         gt=0.0,
     )
     young: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus of the body", gt=0.0)
@@ -79,7 +79,7 @@ class MaterialTable(Table):
     plane: Literal["strain", "stress"] = quantity(
         "strain",
         unit="1",
-        help='which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample',
+        help='young, poisson, bulk are of the solid in plane "strain", or of the 2D sample, "stress"',
     )
     along: Literal["isotropic", "x", "y"] = quantity(
         "isotropic",
@@ -107,7 +107,7 @@ class MaterialTable(Table):
         0.0,
         unit="1",
         means="friction coefficient",
-        help="resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric",
+        help="resistance of contacts without bonds to rolling: moment of at most this times R̄ N; needs fric",
         ge=0.0,
     )
     pb_rmul: float = quantity(
@@ -135,7 +135,8 @@ class MaterialTable(Table):
     dp_on: Literal["unbonded", "all"] | None = quantity(
         None,
         unit="1",
-        help='contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break',
+        help='contacts with dashpots: "all", or those without an intact bond, "unbonded"; absent: these if bonds can '
+        "break",
     )
     quality_factor: float | None = quantity(
         None,
@@ -151,13 +152,13 @@ class MaterialTable(Table):
         help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help),
     )
     pb_ten: float | None = quantity(
-        None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
+        None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable", gt=0.0
     )
     pb_coh: float | None = quantity(
         None,
         unit="Pa",
         means="strength",
-        help="cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear",
+        help="cohesion of the bonds; absent: unbreakable in shear",
         gt=0.0,
     )
     pb_fa: float = quantity(
@@ -167,20 +168,20 @@ class MaterialTable(Table):
         1.0,
         unit="1",
         means="share",
-        help="share of the moment that counts in the stress of bonds (PFC's moment contribution factor)",
+        help="share of the moment in the stress of bonds (PFC's moment contribution factor)",
         ge=0.0,
         le=1.0,
     )
     pb_scatter: Scatter | None = quantity(
         None,
         unit="1",
-        help="scatter of both strengths from bond to bond, a table; absent: none",
+        help="scatter of both strengths, a table; absent: none",
     )
     locked_in: float | None = quantity(
         None,
         unit="Pa",
         means="stress",
-        help="pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch",
+        help="pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: none",
         gt=0.0,
     )
     geometry: Literal["updated", "reference"] = quantity(

@@ -41,8 +41,7 @@ class DiskRun(Run):
     far: Literal["keep", "retire"] = quantity(
         "keep",
         unit="1",
-        help="disks that touch nothing and have fallen below the base by more than the height of "
-        'the scene: "keep", they fall on; "retire", they stop there, and their energy counts as damping',
+        help='disks below the base by more than the height of the scene: "keep", they fall on; "retire", they stop',
     )
 
 

@@ -31,32 +31,26 @@ DIGITS = 9
 class MonitorTable(Table):
     """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
 
-    With `points` it records the mean motion of the body's particles whose centres are in a polygon at the start, each
-    counted by its mass.
-
-    A row `NAME` along the surface becomes the monitors `NAME_1`, `NAME_2` and so on, at equal steps of x from the left.
-    Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
+    A row `NAME` becomes the monitors `NAME_1`, `NAME_2` and so on from the left, on the outline of the uppermost
+    ground.
     """
 
     name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity(
-        ..., unit="1", help="name of the history in the results; of a row without the numbers"
+        ..., unit="1", help="name of the history; of a row without the numbers"
     )
     position: tuple[float, float] | None = quantity(
         None,
         unit="m",
         means="place",
-        help="where; between equally near particles the lowest is taken, of these the leftmost",
+        help="where; of equally near particles the lowest, of these the leftmost",
     )
     points: Points | None = quantity(
         None,
         unit="m",
         means="place",
-        help="corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; "
-        "instead of position",
+        help="corners [[x, y], …] of a polygon, of whose particles at the start the mean by mass is recorded",
     )
-    along: Literal["surface"] | None = quantity(
-        None, unit="1", help='"surface": a row along the free surface of the ground, instead of position'
-    )
+    along: Literal["surface"] | None = quantity(None, unit="1", help='"surface": a row along the free surface')
     spacing: float | None = quantity(
         None, unit="m", means="length", help="step along x from one monitor of a row to the next", gt=0.0
     )

@@ -33,7 +33,7 @@ class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
 
     It needs a `stress`, a steady load or `material.locked_in`, and a support along every axis on which a steady load
-    acts; reactions of supports then act as constant forces. Under `k0`, and under a stress beside periodic, free-field
+    acts. Under `k0`, and under a stress beside periodic, free-field
     and outside sides, contacts begin with the forces of that stress; otherwise forces on the sides make it.
     """
 
@@ -55,8 +55,8 @@ class Static(Table):
         None,
         unit="1",
         means="rest",
-        help="mean unbalanced over mean contact force at its end; absent: "
-        "1e-5, and 1e-7 once contacts slide or open or bonds break",
+        help="mean unbalanced over mean contact force at its end; absent: 1e-5, 1e-7 once contacts slide or open or "
+        "bonds break",
         gt=0.0,
         lt=1.0,
     )
@@ -67,13 +67,11 @@ class Static(Table):
     from_: str | None = quantity(
         None,
         unit="1",
-        help="folder of the results of a case that has settled the same body, from the current folder; absent: none",
+        help="results of a case that has settled the same body, from the current folder",
         alias="from",
         min_length=1,
     )
-    boundary: Mapping[str, StaticSide] = quantity(
-        {}, unit="1", help="a table for each side during the stage; an absent side is free"
-    )
+    boundary: Mapping[str, StaticSide] = quantity({}, unit="1", help="a table for each side; an absent side is free")
 
     def enough(self, *, slides: bool) -> float:
         """The force ratio at which the stage is over; slides : whether under a history-dependent law."""

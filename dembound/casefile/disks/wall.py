@@ -24,21 +24,20 @@ Velocity = tuple[float, float]
 class Wall(Table):
     """A rigid line that the body's disks touch from both sides, also beyond the box of disks: PFC's wall.
 
-    Disks are pushed away, rub with Coulomb's friction, and never stick. The wall does not move by itself: with a
-    velocity or waves it does as given, or as the ground beyond, else it stands. In a static stage it stands.
+    Without a velocity, waves or ``moves``, and in a static stage, it stands.
 
     Notes
     -----
     Validation passes the case file's folder, and texts in place of files, as for waves of type "file".
     """
 
-    name: FileName = quantity(..., unit="1", help="name of the wall in messages and results")
+    name: FileName = quantity(..., unit="1", help="name in messages and results")
     points: Points | str = quantity(
         ...,
         unit="m",
         means="place",
-        help="points [[x, y], …] joined by straight lines, or a text file of x and y in m, relative to the folder of "
-        "the case; the first point again at the end closes it",
+        help="points [[x, y], …] joined by lines, or a text file of x and y; the first point again at the end closes "
+        "it",
     )
     fric: float = quantity(
         0.0, unit="1", means="friction coefficient", help="friction coefficient between disks and wall", ge=0.0
@@ -53,7 +52,7 @@ class Wall(Table):
     kn: float | None = quantity(
         None,
         unit="N/m",
-        help="normal stiffness of a contact; absent: 2·emod of the material, that of the disk alone",
+        help="normal stiffness of a contact; absent: 2·emod of the material",
         gt=0.0,
     )
     ks: float | None = quantity(
@@ -63,17 +62,17 @@ class Wall(Table):
         0.0,
         unit="1",
         means="share",
-        help="normal dashpot of a contact over the critical one, of the disk's mass; it does not pull",
+        help="normal dashpot of a contact over the critical one",
         ge=0.0,
         le=1.0,
     )
     velocity: Velocity | None = quantity(None, unit="m/s", means="velocity", help="constant velocity [vx, vy]")
-    wave_x: str | None = quantity(None, unit="1", help="name of the wave of its velocity along x")
-    wave_y: str | None = quantity(None, unit="1", help="name of the wave of its velocity along y")
+    wave_x: str | None = quantity(None, unit="1", help="wave of its velocity along x")
+    wave_y: str | None = quantity(None, unit="1", help="wave of its velocity along y")
     moves: Literal["incident"] | None = quantity(
         None,
         unit="1",
-        help='"incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`',
+        help='"incident": it moves as a bottom of given velocity, else as the free field at the place `at`',
     )
     at: tuple[float, float] | None = quantity(
         None,
