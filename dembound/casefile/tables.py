@@ -81,28 +81,28 @@ class Run(Table):
     silent_level: float = quantity(
         1e-3,
         means="share",
-        help="share of its own peak so far below which a monitor's velocity is silent",
+        help="share of its peak so far below which a velocity is silent",
         gt=0.0,
         lt=1.0,
     )
     silent_for: float | None = quantity(
         None,
         unit="s",
-        help="time over which all monitors must be silent; absent: the longest wave, or echo from a side",
+        help="time over which all must be silent; absent: the longest wave, or echo from a side",
         gt=0.0,
     )
 
     peak_share: float = quantity(
         0.7,
         means="share",
-        help="share of its peak, from the force at the start, below which a side's force has fallen",
+        help="share of its peak below which a side's force has fallen",
         gt=0.0,
         lt=1.0,
     )
     peak_for: float | None = quantity(
         None,
         unit="s",
-        help="time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice",
+        help="time for which all must have fallen; absent: that in which the slowest wave crosses the body twice",
         gt=0.0,
     )
     rest_for: float | None = quantity(
@@ -150,7 +150,7 @@ class Output(Table):
 
     history_interval: float = quantity(0.0, unit="s", help="time between samples of histories; 0: every step", ge=0.0)
     side_interval: float = quantity(
-        0.0, unit="s", help="time between samples of sides; 0: every eighth step, or a longer history_interval", ge=0.0
+        0.0, unit="s", help="time between samples of sides; 0: every eighth step, or the history_interval", ge=0.0
     )
     energy_interval: float = quantity(
         0.0, unit="s", help="time between entries of the ledger; 0: a hundred over the run", ge=0.0
@@ -158,7 +158,7 @@ class Output(Table):
     snapshots: int = quantity(
         1,
         means="count",
-        help="whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest",
+        help="snapshots of the scene, the last at the end; [static] adds one at rest",
         ge=0,
         le=MOST_SNAPSHOTS,
     )

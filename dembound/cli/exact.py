@@ -188,7 +188,7 @@ def stability(
     steps: Annotated[
         int | None,
         typer.Option(
-            help="Steps of noise at the case's own time step; by default 5,000 to 100,000.",
+            help="Steps of noise at the case's own time step.",
             min=1,
         ),
     ] = None,
@@ -313,7 +313,7 @@ def packing(
     brick: Annotated[bool, typer.Option("--brick", help="The first case's whole brick.")] = False,
     changes: Settings = None,
 ) -> None:
-    """Draw a side of the packing of each case, or a brick (PNG)."""
+    """Draw a side of packings, or a brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
 

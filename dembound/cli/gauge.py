@@ -39,7 +39,7 @@ class EvaluationOptions:
     spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None
     free_end: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
+        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of s and m/s."),
     ] = None
     estimate: Annotated[
         bool,

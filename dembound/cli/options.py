@@ -161,7 +161,7 @@ class Plotted:
     ] = None
     snapshot: Annotated[
         int | None,
-        typer.Option(help="Number of the snapshot, −1 the last; by default that of the largest values, of a bar all."),
+        typer.Option(help="Number of the snapshot, −1 the last; by default that of the largest values."),
     ] = None
     exaggerate: Exaggerated = None
     table: Annotated[

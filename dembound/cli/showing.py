@@ -78,7 +78,7 @@ def movie(
     size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
     every: Annotated[int, typer.Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
-    """Write a movie of a run and its histories (GIF, or PNG frames).
+    """Write a movie of a run (GIF, or PNG frames).
 
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """

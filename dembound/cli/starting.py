@@ -132,7 +132,7 @@ def copy(
     ],
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to.")] = Path(),
 ) -> None:
-    """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
+    """Copy a case, or a group, with the files they read. Overwrites nothing."""
     for path in shipped.copy(name, folder):
         out.print(f"wrote {path}")
 

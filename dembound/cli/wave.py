@@ -68,7 +68,7 @@ class ProcessingOptions:
         float | None, _step(help="Cosine tapers at both ends (s); by default 2, at most 5 % of the record.")
     ] = None
     high_pass: Annotated[
-        float | None, _step(help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.")
+        float | None, _step(help="Keep what is above (Hz); by default 0.1, in short records more.")
     ] = None
     low_pass: Annotated[float | None, _step(help="Keep what is below (Hz); by default all.")] = None
     order: Annotated[int, _step(help="Order of the Butterworth filters, in each direction.", min=1)] = 4
@@ -130,7 +130,7 @@ class GroundOptions:
         list[Kind] | None,
         typer.Option(
             "--as",
-            help="Wave of each component in --deconvolve; by default the case's only one.",
+            help="Wave of each component in --deconvolve.",
         ),
     ] = None
     damping: Annotated[

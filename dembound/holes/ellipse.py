@@ -16,9 +16,7 @@ class Ellipse(Centred):
     """A cavern, or a crack where one axis is short."""
 
     type: Literal["ellipse"]
-    semi_axes: tuple[Length, Length] = quantity(
-        ..., unit="m", means="length", help="[a, b], half its length and half its width"
-    )
+    semi_axes: tuple[Length, Length] = quantity(..., unit="m", means="length", help="[a, b], half its length and width")
     angle: float = quantity(
         0.0, unit="degrees", means="direction", help="from the x axis to the semi-axis a, counter-clockwise"
     )

@@ -24,7 +24,7 @@ WALL = 0.4
 
 
 class Hole(Table, ABC):
-    """An area without particles: particles centred in it, and those it separates from the body, are removed.
+    """An area without particles, and without those that it separates from the body.
 
     One that keeps what is "inside" is the shape of a sample, whose sides are those of the scene.
     """

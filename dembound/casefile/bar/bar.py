@@ -50,7 +50,7 @@ class BarRange(Table):
         0.0,
         unit="m/s",
         means="velocity",
-        help="velocity of the whole range at the start, positive to the right, as of a striker",
+        help="velocity at the start, positive to the right, as of a striker",
     )
     interface: Literal["bonded", "contact"] = quantity(
         "bonded", help="interface with the range on its left; a contact bears no tension"

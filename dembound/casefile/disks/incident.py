@@ -26,22 +26,20 @@ class Damping(Table):
     type: Literal["quality", "rayleigh"] = quantity(
         "quality",
         unit="1",
-        help='"quality": nearly constant Q; "rayleigh": drag αm and βdF/dt, with ξ = 1/(2Q) at both ends of the band',
+        help='"quality": nearly constant Q; "rayleigh": ξ = 1/(2Q) at both ends of the band',
     )
     band: tuple[float, float] | None = quantity(
         None,
         unit="Hz",
-        help="lowest and highest frequency of nearly constant Q; absent: that of the waves, or 0.3 to 10 Hz",
+        help="lowest and highest frequency of Q; absent: that of the waves, or 0.3 to 10 Hz",
     )
     frequency: float | None = quantity(
         None,
         unit="Hz",
-        help="frequency at which the wave speeds and moduli hold; absent: the geometric mean of the band",
+        help="frequency at which speeds and moduli hold; absent: the geometric mean of the band",
         gt=0.0,
     )
-    mechanisms: int = quantity(
-        3, unit="1", means="count", help="relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz", ge=2, le=6
-    )
+    mechanisms: int = quantity(3, unit="1", means="count", help="relaxation mechanisms", ge=2, le=6)
 
     @model_validator(mode="after")
     def _ascending(self) -> "Damping":
@@ -114,10 +112,9 @@ class Motion(Table):
 
 
 class IncidentWave(Table):
-    """A plane wave that enters the disks at an angle, with its reflections at the free surface and at joints of layers.
+    """A plane wave at an angle, with its reflections at the free surface and between layers.
 
-    For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave along
-    its direction (P), or to the right of it (SV).
+    For sides of type "outside". The incident wave moves along its direction (P), or to the right of it (SV).
     """
 
     type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave: SV or P")
@@ -125,7 +122,7 @@ class IncidentWave(Table):
         ...,
         unit="degrees",
         means="direction",
-        help="from the vertical, of the direction in which it runs, in the lowest layer; positive to the right",
+        help="of its direction from the vertical, in the lowest layer; positive to the right",
         gt=-90.0,
         lt=90.0,
     )
@@ -134,7 +131,7 @@ class IncidentWave(Table):
         None,
         unit="m",
         means="place",
-        help="where the incident wave has this velocity; absent: the lower corner of the ground it reaches first",
+        help="where it has this velocity; absent: the lower corner of the ground it reaches first",
     )
 
 

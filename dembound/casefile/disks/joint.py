@@ -52,7 +52,7 @@ class JointKeys(Table):
         0.0,
         unit="degrees",
         means="direction",
-        help="angle at which the faces ride up on each other as they slide, below that of fric",
+        help="angle at which faces that slide ride up on each other, below that of fric",
         ge=0.0,
         lt=90.0,
     )

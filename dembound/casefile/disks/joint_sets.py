@@ -31,7 +31,7 @@ OF_SETS = ("spacing", "persistence", "trace", "region", "seed")
 
 
 class JointTable(JointKeys):
-    """A plane of weakness: a line whose two faces are joined by springs along all of it; or a set of parallel lines.
+    """A plane of weakness, a line whose two faces are joined by springs; or a set of parallel lines.
 
     A set `NAME` becomes the joints `NAME_1`, `NAME_2` and so on.
     """
@@ -72,7 +72,7 @@ class JointTable(JointKeys):
         None,
         unit="m",
         means="place",
-        help="where a set is: [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere",
+        help="where a set is: [x0, y0, x1, y1], or corners of a polygon; absent: everywhere",
     )
     seed: int = quantity(0, unit="1", means="count", help="seed of the places of a set", ge=0, le=LARGEST_WHOLE)
 

@@ -233,7 +233,7 @@ CONTINUUM = ".continuum"
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside", of spectral elements; keys left out follow from `accuracy`.
 
-    Its outer elements absorb.
+    Outer elements absorb.
     """
 
     order: int = quantity(

@@ -25,8 +25,7 @@ class Load(Table):
     continuum it is a uniform traction. An acceleration acts on the same or, without a place, on all particles. A
     pressure acts in a hole, or on sides as by a membrane.
 
-    A wave's values, taken as pure numbers, are the time factor; without one the load is steady and acts from the static
-    stage on.
+    A wave's values, as pure numbers, are the time factor; without one the load is steady, from the static stage on.
     """
 
     name: FileName = quantity(..., unit="1", help="name in messages and results")

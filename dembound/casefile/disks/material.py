@@ -59,7 +59,7 @@ class MaterialTable(Table):
         0.5,
         unit="1",
         means="share",
-        help="share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only",
+        help="share α_c of the contacts in the stiffness (Z eq. 9); 0 in pattern A only",
         ge=0.0,
         le=1.0,
     )
@@ -113,14 +113,12 @@ class MaterialTable(Table):
     pb_rmul: float = quantity(
         1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
     )
-    damp: float = quantity(
-        0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
-    )
+    damp: float = quantity(0.0, unit="1", means="local damping", help="local damping coefficient", ge=0.0, lt=1.0)
     dp_nratio: float = quantity(
         0.0,
         unit="1",
         means="share",
-        help="normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)",
+        help="normal dashpot of closed contacts over the critical one (PFC's dp_mode 1)",
         ge=0.0,
         le=1.0,
     )

@@ -31,7 +31,7 @@ class Reduce(Table):
 
     rows: bool = quantity(True, unit="1", help="whether rows of disks that move identically are stepped as one")
     settled: bool = quantity(
-        False, unit="1", help="whether the elastic law serves again after a static stage if nothing is open or slides"
+        False, unit="1", help="whether the elastic law serves after a static stage if nothing is open or slides"
     )
 
 

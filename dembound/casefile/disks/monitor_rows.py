@@ -29,7 +29,7 @@ DIGITS = 9
 
 
 class MonitorTable(Table):
-    """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
+    """A place at which the motion of the nearest particle, or of the continuum, is recorded; or a row of places.
 
     A row `NAME` becomes the monitors `NAME_1`, `NAME_2` and so on from the left, on the outline of the uppermost
     ground.

@@ -22,7 +22,7 @@ Velocity = tuple[float, float]
 
 
 class Wall(Table):
-    """A rigid line that the body's disks touch from both sides, also beyond the box of disks: PFC's wall.
+    """A rigid line that disks touch from both sides, also beyond the box of disks: PFC's wall.
 
     Without a velocity, waves or ``moves``, and in a static stage, it stands.
 
@@ -36,8 +36,7 @@ class Wall(Table):
         ...,
         unit="m",
         means="place",
-        help="points [[x, y], …] joined by lines, or a text file of x and y; the first point again at the end closes "
-        "it",
+        help="points [[x, y], …], or a text file of x and y; the first one again at the end closes it",
     )
     fric: float = quantity(
         0.0, unit="1", means="friction coefficient", help="friction coefficient between disks and wall", ge=0.0
@@ -46,7 +45,7 @@ class Wall(Table):
         0.0,
         unit="1",
         means="friction coefficient",
-        help="resistance to rolling: the moment is at most this times R N of a disk; needs fric > 0",
+        help="resistance to rolling: moment of at most this times R N; needs fric",
         ge=0.0,
     )
     kn: float | None = quantity(
