@@ -152,9 +152,7 @@ class Output(Table):
     side_interval: float = quantity(
         0.0, unit="s", help="time between samples of sides; 0: every eighth step, or the history_interval", ge=0.0
     )
-    energy_interval: float = quantity(
-        0.0, unit="s", help="time between entries of the ledger; 0: a hundred over the run", ge=0.0
-    )
+    energy_interval: float = quantity(0.0, unit="s", help="time between entries of the ledger; 0: a hundred", ge=0.0)
     snapshots: int = quantity(
         1,
         means="count",

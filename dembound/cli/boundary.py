@@ -55,11 +55,11 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        typer.Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
+        typer.Option("--angle", help="Degrees from the side's normal. May be repeated."),
     ] = None,
     frequencies: Annotated[
         list[float] | None,
-        typer.Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated."),
+        typer.Option("--frequency", help="Hz; by default those of the case's waves. May be repeated."),
     ] = None,
     types: Annotated[
         list[str] | None,

@@ -57,7 +57,7 @@ def calibrate_sides(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Calibrated case; by default NAME_calibrated.toml beside the case.",
+            help="Calibrated case; by default NAME_calibrated.toml.",
             callback=writable,
         ),
     ] = None,

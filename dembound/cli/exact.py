@@ -107,7 +107,7 @@ def dispersion(
     table: CurveTable = None,
     changes: Settings = None,
 ) -> None:
-    """Print wave speeds on bars, and the nodes a wavelength needs.
+    """Print wave speeds on bars, and nodes per wavelength.
 
     Of peridynamics and of central differences, for the bars of cases, or for all combinations of the options.
     """
@@ -192,7 +192,7 @@ def stability(
             min=1,
         ),
     ] = None,
-    full: Annotated[bool, typer.Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="The whole scene, not fewer copies of its brick.")] = False,
     strength: Annotated[
         bool,
         typer.Option("--strength", help="How near the ground is to failure, not the step."),

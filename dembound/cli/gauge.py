@@ -46,9 +46,7 @@ class EvaluationOptions:
         typer.Option("--estimate", help="Speed and attenuation from tension peaks, also of results."),
     ] = False
     peaks: Annotated[int | None, typer.Option(help="Tension peaks for speed and attenuation.", min=2)] = None
-    pulse_end: Annotated[
-        float | None, typer.Option(help="When the incident pulse has passed (s); by default when it returns.")
-    ] = None
+    pulse_end: Annotated[float | None, typer.Option(help="When the incident pulse has passed (s).")] = None
     wave_speed: Annotated[float | None, typer.Option(help="Wave speed (m/s) of another test.")] = None
     attenuation: Annotated[
         float | None,
@@ -77,7 +75,7 @@ class EvaluationOptions:
 def gauge(
     record: Annotated[Path, typer.Argument(metavar="RECORD", help="Text file of time and signal, or a run's results.")],
     monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
-    position: Annotated[float | None, typer.Option(help="Position of the gauge from the loaded end (m).")] = None,
+    position: Annotated[float | None, typer.Option(help="From the loaded end to the gauge (m).")] = None,
     length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
     density: Annotated[
         float | None, typer.Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")

@@ -107,8 +107,8 @@ class ReadingOptions:
         str | None,
         _given(metavar="NAME,NAME,…", help='Columns of a text, as time,NS,EW; "-" leaves one out.'),
     ] = None
-    series: Annotated[bool, _given("--series", help="Take all numbers, line by line, as one channel.")] = False
-    skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning of a text.")] = 0
+    series: Annotated[bool, _given("--series", help="All numbers, line by line, are one channel.")] = False
+    skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning.")] = 0
 
     def given(self) -> Reading:
         """These options as the readers of formats take them."""

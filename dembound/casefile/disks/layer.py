@@ -59,7 +59,7 @@ class Layer(Differing):
     layer gives one.
     """
 
-    name: FileName | None = quantity(None, unit="1", help="name in results; absent: its number, from 1 at the surface")
+    name: FileName | None = quantity(None, unit="1", help="name; absent: its number, from 1 at the surface")
     thickness: float | None = quantity(
         None, unit="m", means="length", help="thickness; the last layer may have none and goes on below", gt=0.0
     )
