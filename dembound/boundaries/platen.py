@@ -27,7 +27,7 @@ class Keeping(Boundary):
         None,
         means="count",
         help="disks from the side, counted by bonds, whose bonds do not break; absent: "
-        f"{INTACT} where forces of the static stage act on a side that stands for ground beyond",
+        f"{INTACT} where forces of the static stage act on a side that stands for ground beyond, else 0",
         ge=0,
         le=MOST_INTACT,
     )

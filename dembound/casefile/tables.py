@@ -88,7 +88,7 @@ class Run(Table):
     silent_for: float | None = quantity(
         None,
         unit="s",
-        help="time over which all must be silent; absent: the longest wave, or echo from a side",
+        help="time over which all monitors must be silent; absent: the longest wave, or echo from a side",
         gt=0.0,
     )
 
@@ -102,13 +102,14 @@ class Run(Table):
     peak_for: float | None = quantity(
         None,
         unit="s",
-        help="time for which all must have fallen; absent: that in which the slowest wave crosses the body twice",
+        help="time for which all forces must have fallen; absent: that in which the slowest wave crosses the body "
+        "twice",
         gt=0.0,
     )
     rest_for: float | None = quantity(
         None,
         unit="s",
-        help="time for which it must be at rest; absent: a free fall from the height of the body",
+        help="time for which what fell must be at rest; absent: a free fall from the height of the body",
         gt=0.0,
     )
 

@@ -131,7 +131,7 @@ class IncidentWave(Table):
         None,
         unit="m",
         means="place",
-        help="where it has this velocity; absent: the lower corner of the ground it reaches first",
+        help="where the incident wave has this velocity; absent: the lower corner of the ground it reaches first",
     )
 
 

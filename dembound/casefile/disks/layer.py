@@ -55,8 +55,8 @@ class Differing(Table):
 class Layer(Differing):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
-    Absent keys are those of [material], but none for stiffness (wave speeds, targets, `emod` and `pb_emod`) where the
-    layer gives one.
+    Absent keys are those of [material], but none for stiffness (wave speeds, targets, `emod`, `pb_emod`) where it
+    gives one.
     """
 
     name: FileName | None = quantity(None, unit="1", help="name; absent: its number, from 1 at the surface")
