@@ -42,7 +42,7 @@ Place = tuple[Edge, BoundaryMedium]
 
 
 class Boundary(Table):
-    """What acts on a side; a side without a table is free.
+    """What acts on a side; without a table it is free.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ Error = Annotated[
     Option(
         "--error",
         metavar="ERROR",
-        help="Largest error of velocity and displacement at all monitors, such as 1% or 0.01. "
+        help="Largest error of velocity and displacement at all monitors, as 1%. "
         "Sides, box, disks, elements, law, step and end are chosen as cheaply as this allows.",
     ),
 ]
@@ -57,8 +57,8 @@ Of = Annotated[
     Truth | None,
     Option(
         "--of",
-        help="Errors of these disks as the material, or of the rock, for which they are a grid; by default disks "
-        "where the packing is random or bonds may break.",
+        help="Errors of these disks, or of the rock for which they are a grid; by default disks where the packing is "
+        "random or bonds may break.",
     ),
 ]
 Seeds = Annotated[int, Option(min=1, help="Random packings, to see how results scatter.", metavar="N")]
@@ -68,8 +68,7 @@ Longest = Annotated[
         "--longest",
         min=0.0,
         metavar="SECONDS",
-        help="CPU seconds of the steps of a choice, by default 60, or 64 times those of the case; the search takes a "
-        "fifth of it, 20 s, or as long as the case.",
+        help="CPU seconds of the steps of a choice, by default 60, or 64 times those of the case.",
     ),
 ]
 
@@ -226,7 +225,7 @@ Spent = Annotated[
         "--longest",
         min=0.0,
         metavar="SECONDS",
-        help="CPU seconds for companions, runs with larger disks; by default 20, or as long as the run.",
+        help="CPU seconds for companions; by default 20, or as long as the run.",
     ),
 ]
 

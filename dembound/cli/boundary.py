@@ -64,8 +64,7 @@ def boundary(
         Option(
             "--type",
             metavar="TYPE",
-            help="Type of side to compare, or its table, e.g. '{type = \"viscoelastic\", distance = 100}'. May be "
-            "repeated.",
+            help="Type of side to compare, or its table. May be repeated.",
         ),
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),

@@ -163,7 +163,7 @@ def resume(
     until: Annotated[float | None, Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
     threads: Threads = None,
 ) -> None:
-    """Continue stopped runs from their last checkpoints.
+    """Continue stopped runs.
 
     The results are the same as without the interruption.
 

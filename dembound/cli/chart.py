@@ -38,8 +38,8 @@ def chart(
         ChartReference | None,
         Option(
             metavar="REFERENCE",
-            help="exact, a solution; extended, a scene so large that nothing returns; finer, of bars; finest, the "
-            "choice with the most nodes times steps. By default the first that the case allows.",
+            help="exact; extended, a scene so large that nothing returns; finer, of bars; finest, the choice with "
+            "the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[

@@ -104,7 +104,7 @@ def dispersion(
     table: CurveTable = None,
     changes: Settings = None,
 ) -> None:
-    """Print wave speeds on bars, and the nodes a wavelength needs.
+    """Print wave speeds on bars, and nodes per wavelength.
 
     Of peridynamics and of central differences, for the bars of cases, or for all combinations of the options.
     """
@@ -301,7 +301,7 @@ def packing(
     brick: Annotated[bool, Option("--brick", help="The first case's whole brick.")] = False,
     changes: Settings = None,
 ) -> None:
-    """Draw a side of the packing of each case, or a brick (PNG)."""
+    """Draw a side of packings, or a brick (PNG)."""
     from dembound.disks.scene import build
     from dembound.plot.packing import plot_brick, plot_patterns
 

@@ -27,7 +27,7 @@ def plot(
     *,
     asked: Plotted,
 ) -> None:
-    """Draw histories of runs, or a field or the energies of one (PNG).
+    """Draw histories of runs, a field or energies (PNG).
 
     Histories of several runs, and passes of several calibrations, are drawn over each other.
 

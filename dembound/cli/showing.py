@@ -72,7 +72,7 @@ def movie(
     size: Annotated[int, Option(help="Width of the picture in pixels.", min=200, callback=at_most(8192))] = 960,
     every: Annotated[int, Option(help="Show only every N-th snapshot.", min=1)] = 1,
 ) -> None:
-    """Write a movie of a run and its histories (GIF, or PNG frames).
+    """Write a movie of a run (GIF, or PNG frames).
 
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """
@@ -174,9 +174,9 @@ def signals(
         Shown,
         Option(
             metavar="WHAT",
-            help="fourier: spectra; transfer: their ratios to --reference or to free-field twins; response: spectra "
-            "with 5 % damping; section: histories at their distances; hodograph; surface: peaks, spectra and end of "
-            "the motion along the surface over the free field's.",
+            help="fourier; transfer: ratios to --reference or to free-field twins; response: with 5 % damping; "
+            "section: histories at their distances; hodograph; surface: motion along the surface over the free "
+            "field's.",
         ),
     ] = "fourier",
     output: Annotated[Path, PICTURE] = Path("signals.png"),

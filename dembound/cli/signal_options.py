@@ -35,7 +35,7 @@ class SignalOptions:
     clipped: Annotated[bool, of_file("--clipped", help="Accept a signal that looks clipped.")] = False
     gauge_factor: Annotated[float | None, _of_bridge(help="Gauge factor k.")] = None
     bridge: Annotated[
-        str, _of_bridge("--bridge", help="quarter, half (two opposite gauges along the bar) or full (and two across).")
+        str, _of_bridge("--bridge", help="quarter, half (two gauges along the bar) or full (and two across).")
     ] = "quarter"
     excitation: Annotated[float | None, _of_bridge(help="Voltage of the bridge (V).")] = None
     gain: Annotated[float, _of_bridge(help="Gain of its amplifier.")] = 1.0

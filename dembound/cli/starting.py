@@ -129,7 +129,7 @@ def copy(
         str,
         Argument(
             metavar="NAME",
-            help="A case, as `dembound cases` lists it, or a group such as zhou2018.",
+            help="A case, or a group such as zhou2018.",
             autocompletion=lambda: [*shipped.groups(), *shipped.names()],
         ),
     ],

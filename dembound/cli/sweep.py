@@ -258,7 +258,7 @@ def respond(
         list[str],
         Argument(
             metavar="RECORD...",
-            help="Text files of time (s) and velocity (m/s); of a library with several inputs INPUT=FILE,INPUT=FILE.",
+            help="Text files of time (s) and velocity (m/s); of several inputs INPUT=FILE,INPUT=FILE.",
         ),
     ],
     output: Output = Path("results"),
@@ -267,8 +267,7 @@ def respond(
         Option(
             "--load-factor",
             metavar="MONITOR,MONITOR",
-            help="Print the load factor of each record at the contact between the disks of two monitors. May be "
-            "repeated.",
+            help="Print load factors at the contact between the disks of two monitors. May be repeated.",
         ),
     ] = None,
 ) -> None:

@@ -59,15 +59,15 @@ class ProcessingOptions:
         Baseline | None,
         _step(
             metavar="KIND",
-            help="mean, before the motion; linear, a fitted line; zero-velocity: the mean, then the velocity left at "
-            "the end; none. By default mean.",
+            help="mean, before the motion; linear; zero-velocity: the mean, then the velocity left at the end; none. "
+            "By default mean.",
         ),
     ] = None
     taper: Annotated[
         float | None, _step(help="Cosine tapers at both ends (s); by default 2, at most 5 % of the record.")
     ] = None
     high_pass: Annotated[
-        float | None, _step(help="Keep what is above (Hz), 0: all; by default 0.1, in short records more.")
+        float | None, _step(help="Keep what is above (Hz); by default 0.1, in short records more.")
     ] = None
     low_pass: Annotated[float | None, _step(help="Keep what is below (Hz); by default all.")] = None
     order: Annotated[int, _step(help="Order of the Butterworth filters, in each direction.", min=1)] = 4
@@ -94,14 +94,14 @@ class ProcessingOptions:
 class ReadingOptions:
     """What is known about a file beside its header."""
 
-    unit: Annotated[str | None, _given(help="Unit of the values, e.g. g, cm/s² or m/s; replaces the file's.")] = None
+    unit: Annotated[str | None, _given(help="Unit of the values, e.g. g, cm/s² or m/s.")] = None
     time_step: Annotated[float | None, _given("--dt", metavar="X", help="Time step (s).")] = None
     columns: Annotated[
         str | None,
-        _given(metavar="NAME,NAME,…", help='Columns of a text in their order, as time,NS,EW; "-" leaves one out.'),
+        _given(metavar="NAME,NAME,…", help='Columns of a text, as time,NS,EW; "-" leaves one out.'),
     ] = None
-    series: Annotated[bool, _given("--series", help="Take all numbers, line by line, as one channel.")] = False
-    skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning of a text.")] = 0
+    series: Annotated[bool, _given("--series", help="All numbers, line by line, are one channel.")] = False
+    skip: Annotated[int, _given(metavar="N", min=0, help="Leave out lines at the beginning.")] = 0
 
     def given(self) -> Reading:
         """These options as the readers of formats take them."""
@@ -127,8 +127,7 @@ class GroundOptions:
         Damping,
         Option(
             metavar="DAMPING",
-            help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q), as in equivalent-linear programs; or constant_q, "
-            "causal.",
+            help="Q in --deconvolve: as_run; hysteretic, G(1 + i/Q); or constant_q, causal.",
         ),
     ] = "as_run"
     transfer: Annotated[
@@ -186,7 +185,7 @@ def wave(
             "--output",
             "-o",
             metavar="NAME.csv",
-            help="Wave, of several components with their names appended; by default FILE_velocity.csv.",
+            help="Wave; names of components are appended; by default FILE_velocity.csv.",
             callback=_csv,
         ),
     ] = None,

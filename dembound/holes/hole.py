@@ -23,10 +23,9 @@ WALL = 0.4
 
 
 class Hole(Table, ABC):
-    """An area without particles: particles centred in it, and those it separates from the body, are removed.
+    """An area without particles, and without those that it separates from the body.
 
-    A particle on its outline remains. A hole that keeps what is "inside" is the shape of a sample: the particles
-    outside are removed, and the sides of the scene are those of the sample.
+    One that keeps what is "inside" is the shape of a sample, whose sides are those of the scene.
     """
 
     type: str

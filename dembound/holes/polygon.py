@@ -13,7 +13,7 @@ Points = tuple[tuple[float, float], ...]
 
 
 class Polygon(Hole):
-    """A section drawn point by point, such as a horseshoe tunnel or the valley above a slope."""
+    """A section drawn point by point, as the valley above a slope."""
 
     type: Literal["polygon"]
     points: Points = quantity(unit="m", means="place")

@@ -12,7 +12,7 @@ from dembound.table import quantity
 
 
 class EdgedBrick(DensePacking):
-    """Pattern B with rows of equal disks on x = 0 and y = 0 of every brick, and at the right and top of the scene."""
+    """Pattern B with rows of equal disks round every brick."""
 
     regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 

@@ -30,8 +30,7 @@ class Calibrating:
     method: Annotated[
         Method,
         Asked(
-            "impedance: solve for β, and keep the matched β where less returns with it; ratio: multiply by "
-            "M_out/M_in; homogenised: the matched β, no run.",
+            "impedance: solve for β; ratio: multiply by M_out/M_in; homogenised: the matched β, no run.",
             metavar="METHOD",
         ),
     ] = "impedance"

@@ -9,7 +9,7 @@ from dembound.waves.wave import HANN_FADE, Pulse
 
 
 class Cosine(Pulse):
-    """One smooth one-sided pulse: v = M/2 · (1 − cos 2πt/T) for 0 ≤ t ≤ T (Z eq. 12)."""
+    """One-sided pulse: v = M/2 · (1 − cos 2πt/T) for 0 ≤ t ≤ T (Z eq. 12)."""
 
     type: Literal["cosine"]
 

@@ -17,7 +17,7 @@ PER_LOBE = 64
 
 
 class Triangle(Shape):
-    """One one-sided pulse: v = M t/t_r during the rise t_r, then M(1 − (t − t_r)/t_f) over the fall t_f."""
+    """One-sided pulse: v = M t/t_r during the rise t_r, then M(1 − (t − t_r)/t_f) over the fall t_f."""
 
     type: Literal["triangle"]
     rise: float = quantity(unit="s", means="period", gt=0.0)

@@ -89,7 +89,7 @@ NonZero = Annotated[float, AfterValidator(_not_zero)]
 class Wave(Table, ABC):
     """A velocity history, zero before `start`; as the factor of a load its values are pure numbers.
 
-    Of an outcrop it is that of the incident wave, half as large as given; of motion within the ground as given.
+    Of an outcrop half enters.
 
     Attributes
     ----------

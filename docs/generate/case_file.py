@@ -136,7 +136,7 @@ BARS = (
 
 RULES = """# The case file
 
-All tables and keys of a case, a TOML file. `dembound check FILE` prints facts, warnings and all mistakes.
+All tables and keys of a case, a TOML file.
 
 - **Units** are SI, angles degrees. Two dimensions mean a thickness of 1 m: forces are per metre.
 - **Signs**: velocities are positive along +x and +y on every side; tension is positive, a pressure pushes.
@@ -144,6 +144,7 @@ All tables and keys of a case, a TOML file. `dembound check FILE` prints facts, 
 - **Sizes**: numbers are 0 or between 1e-30 and 1e30; a scene has at most 5e8 disks, a random brick 1e6, a bar 2e6
   spacings, a case 1,000 monitors.
 - **Keys**: `seed` = 0 has a default, (m) is a positive number in metres; unknown keys and tables are refused.
+- **Files** are relative to the folder of the case.
 - `--set load.blow.pressure=5e6` changes a key for one command; layers, loads, holes, walls and monitors go by names or
   numbers.
 - Z is Zhou et al. (2018), L is Lu & Wang (2016).

@@ -16,8 +16,8 @@ from dembound.cli.app import EXIT_CODES, MORE, app
 
 COMMANDS = """# Commands
 
-All commands with their arguments and options, of which those with … may be repeated; `dembound COMMAND --help` prints
-more. What several commands have in common is explained [below](#options-of-several-commands).
+Options with … may be repeated; `dembound COMMAND --help` prints more. Options of several commands are explained
+[below](#options-of-several-commands).
 """
 
 MANY = 5

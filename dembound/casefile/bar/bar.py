@@ -79,8 +79,7 @@ ROUNDING = 1e-9
 class Bar(Table):
     """A straight bar that moves along its axis, with nodes at x = 0, Δx, … L, and its material.
 
-    The two nodes at the ends have half a volume. The strength is given by the stress or the stretch at which a bond
-    breaks, s₀ = σ_t/E; without one nothing breaks.
+    The two nodes at the ends have half a volume. Without a strength or critical stretch nothing breaks.
 
     A bar with ranges is a row of uniform bars, for which its own keys are defaults.
     """

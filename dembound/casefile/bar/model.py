@@ -25,10 +25,9 @@ from dembound.table import FileName, Table, quantity
 
 
 class BarLoad(Table):
-    """A pressure on one end of a bar, on its last node or spread over its last few in proportion to their volume.
+    """A pressure on one end of a bar, on its last node or the last few in proportion to their volume.
 
-    A wave's values, taken as pure numbers, are the time factor. Coarse peridynamic bars need a load on several nodes:
-    on one node it breaks them.
+    Coarse peridynamic bars need a load on several nodes: on one node it breaks them.
     """
 
     name: FileName = quantity()

@@ -21,9 +21,9 @@ from dembound.table import Box, Table, quantity
 
 
 class Ground(Table):
-    """The ground, of which the disks fill a box; outside it is a continuum up to its free surface at the top.
+    """The ground, of which the disks fill a box; outside is a continuum up to its free surface.
 
-    With a `surface` the disks fill the box up to that only; beyond the box it goes on at its heights there.
+    With a `surface` the disks fill the box up to that; beyond the box it goes on at its heights there.
 
     Notes
     -----

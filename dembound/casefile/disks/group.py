@@ -34,9 +34,7 @@ MOST = 32
 class GroupTable(Differing):
     """The disks of a part of the ground, with strengths, friction or moduli of their own.
 
-    Absent keys are those of the ground there; of groups that overlap, those of the later one hold. Contacts and bonds
-    across its border have the smaller friction and strengths of both sides, and their springs in series. With `time`
-    its friction and strengths hold from then on.
+    Absent keys are those of the ground there; of groups that overlap, those of the later one hold.
     """
 
     name: FileName = quantity()

@@ -98,10 +98,9 @@ class Motion(Table):
 
 
 class IncidentWave(Table):
-    """A plane wave that enters the disks at an angle, with its reflections at the free surface and at joints of layers.
+    """A plane wave at an angle, with its reflections at the free surface and between layers.
 
-    For sides of type "outside". At a point the incident wave, without reflections, has the velocity of its wave along
-    its direction (P), or to the right of it (SV).
+    For sides of type "outside". The incident wave moves along its direction (P), or to the right of it (SV).
     """
 
     type: Literal["sv", "p"] = quantity()

@@ -31,12 +31,9 @@ OF_SETS = ("spacing", "persistence", "trace", "region", "seed")
 
 
 class JointTable(JointKeys):
-    """A plane of weakness: a line whose two faces are joined by springs along all of it; or a set of parallel lines.
+    """A plane of weakness, a line whose two faces are joined by springs; or a set of parallel lines.
 
-    Without `fric` the faces neither part nor slide. With it they part where they are pulled by more than `ten`, and
-    slide where the shear stress reaches `coh` + `fric` × the pressure; both strengths are then lost. A set `NAME`
-    becomes the joints `NAME_1`, `NAME_2` and so on. A line that crosses one of an earlier table ends at it on both
-    sides; from all others lines stay three diameters away.
+    A set `NAME` becomes the joints `NAME_1`, `NAME_2` and so on.
     """
 
     points: Points | None = quantity(None, unit="m", means="place")

@@ -71,8 +71,8 @@ def with_keys_of_material(table: type[Differing], name: str, keys: Sequence[str]
 class LayerTable(Differing):
     """A horizontal layer of the ground, from the surface down in the order of the file.
 
-    Absent keys are those of [material]. A layer that gives one of the keys for stiffness (wave speeds, targets, `emod`
-    and `pb_emod`) takes none of them from there. Where every layer gives them or the density, [material] need not.
+    Absent keys are those of [material], but none for stiffness (wave speeds, targets, `emod`, `pb_emod`) where it
+    gives one.
     """
 
     name: FileName | None = quantity(None)
@@ -228,7 +228,7 @@ CONTINUUM = ".continuum"
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside", of spectral elements; keys left out follow from `accuracy`.
 
-    Its outer elements absorb.
+    Outer elements absorb.
     """
 
     order: int = quantity(4, means="count", ge=3, le=6)

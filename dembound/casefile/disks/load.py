@@ -23,11 +23,9 @@ class Load(Table):
 
     A force acts on one particle or on those of a rectangle, in proportion to their area; on the free surface of a
     continuum it is a uniform traction. An acceleration acts on the same or, without a place, on all particles. A
-    pressure acts in a hole, or on sides as by a membrane through the centres of their outer particles, which it
-    follows, except where a boundary of the run prescribes the motion.
+    pressure acts in a hole, or on sides as by a membrane.
 
-    A wave's values, taken as pure numbers, are the time factor; without one the load is steady and acts from the static
-    stage on.
+    A wave's values, as pure numbers, are the time factor; without one the load is steady, from the static stage on.
     """
 
     name: FileName = quantity()

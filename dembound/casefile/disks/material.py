@@ -36,12 +36,11 @@ HISTORY_KEYS = ("locked_in", "geometry", "elastic_start", *DASHPOT_KEYS, "dp_on"
 class MaterialTable(Table):
     """Density, and contacts and bonds by PFC's names; stiffness is given, or follows from wave speeds or targets.
 
-    Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds of the body: moduli and `kratio` =
-    `pb_kratio` are found so that the packing has them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an
-    `s_wave_speed` alone scales them. Under the law "elastic" contacts neither open nor slip and bonds do not break;
-    "linearpbond" is PFC's, and alone has `locked_in`, `geometry` and `elastic_start`. Strengths are for it and for
-    `output.load_factor`, and `rr_fric` for it. Under "hertz" stiffness follows from `hz_shear`, `hz_poiss` and the
-    stress at rest, `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
+    Targets are `young` and `poisson`, `bulk` and `shear`, or both wave speeds: moduli and `kratio` = `pb_kratio` are
+    found for them. From a `p_wave_speed` alone they follow by Z eqs 9-11, an `s_wave_speed` alone scales them. The law
+    "linearpbond" alone has `locked_in`, `geometry`, `elastic_start` and `rr_fric`; strengths are for it and for
+    `output.load_factor`. Under "hertz" stiffness follows from `hz_shear`, `hz_poiss` and the stress at rest,
+    `static.stress`. Both have dashpots c = 2β√(m_c k) with m_c = m₁m₂/(m₁ + m₂).
     """
 
     density: float = quantity(unit="kg/m³", gt=0.0)

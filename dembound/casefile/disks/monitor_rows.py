@@ -29,13 +29,10 @@ DIGITS = 9
 
 
 class MonitorTable(Table):
-    """A place at which the motion of the nearest particle, or of the continuum there, is recorded; or a row of places.
+    """A place at which the motion of the nearest particle, or of the continuum, is recorded; or a row of places.
 
-    With `points` it records the mean motion of the body's particles whose centres are in a polygon at the start, each
-    counted by its mass.
-
-    A row `NAME` along the surface becomes the monitors `NAME_1`, `NAME_2` and so on, at equal steps of x from the left.
-    Each is on the outline of the uppermost ground, as holes leave it, whatever the disks are.
+    A row `NAME` becomes the monitors `NAME_1`, `NAME_2` and so on from the left, on the outline of the uppermost
+    ground.
     """
 
     name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()

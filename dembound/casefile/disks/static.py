@@ -33,7 +33,7 @@ class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
 
     It needs a `stress`, a steady load or `material.locked_in`, and a support along every axis on which a steady load
-    acts; reactions of supports then act as constant forces. Under `k0`, and under a stress beside periodic, free-field
+    acts. Under `k0`, and under a stress beside periodic, free-field
     and outside sides, contacts begin with the forces of that stress; otherwise forces on the sides make it.
     """
 

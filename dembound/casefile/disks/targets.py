@@ -13,8 +13,8 @@ KEY_OF = {"normal": "deviation", "weibull": "shape"}
 class Scatter(Table):
     """Scatter of the strengths of bonds: one factor for each, of mean 1, on both `pb_ten` and `pb_coh`.
 
-    "normal" is cut off at three deviations either side, at most 0.95, and "weibull" below 0.05. The factor of a bond
-    follows from `packing.seed` and its place in the packing.
+    "normal" is cut off at three deviations either side, at most 0.95, and "weibull" below 0.05. The factor
+    follows from `packing.seed` and the bond's place.
     """
 
     type: Literal["normal", "weibull"] = quantity()

@@ -22,10 +22,9 @@ Velocity = tuple[float, float]
 
 
 class Wall(Table):
-    """A rigid line that the body's disks touch from both sides, also beyond the box of disks: PFC's wall.
+    """A rigid line that disks touch from both sides, also beyond the box of disks: PFC's wall.
 
-    Disks are pushed away, rub with Coulomb's friction, and never stick. The wall does not move by itself: with a
-    velocity or waves it does as given, or as the ground beyond, else it stands. In a static stage it stands.
+    Without a velocity, waves or ``moves``, and in a static stage, it stands.
 
     Notes
     -----
