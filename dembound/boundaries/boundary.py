@@ -233,9 +233,9 @@ class Drivable(Boundary):
     """
 
     wave_p: str | None = quantity(None)
-    """name of the wave that moves along the side's normal"""
+    """wave that moves along the side's normal"""
     wave_s: str | None = quantity(None)
-    """name of the wave that moves across the side's normal"""
+    """wave that moves across the side's normal"""
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Waves along a direction in which nothing can move."""

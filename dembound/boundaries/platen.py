@@ -43,11 +43,10 @@ class Holding(Keeping):
     """A side that prescribes motion, of all its particles or, as a platen or jaw, of those `within` a range."""
 
     within: tuple[float, float] | None = quantity(None, unit="m", means="place")
-    """range [x0, x1] of a bottom or top, [y0, y1] of a left or right side in which it holds particles, others are free;
-    absent: all"""
+    """range [x0, x1] or [y0, y1] of the side in which it holds particles; absent: all"""
 
     reactions: Literal["kept", "none"] = quantity("kept")
-    """of a static side: "kept" in the run as constant forces; "none": they end, and the support is taken away"""
+    """of a static side: "kept", constant forces in the run; "none", the support is taken away"""
 
     until: float | None = quantity(None, unit="s", ge=0.0)
     """of a static side: time of the run at which kept reactions end; absent: never"""

@@ -55,7 +55,7 @@ class Dashpots(Keeping):
     beta_s: Given = quantity("matched", means="factor of dashpots")
     """factor β of the dashpots across the side's normal"""
     rock: Rock | None = quantity(None)
-    """rock of a half-space beyond the side, with its density, p_wave_speed and s_wave_speed; gives both β"""
+    """rock beyond the side: density, p_wave_speed and s_wave_speed; gives both β"""
     half_mass: bool = quantity(False)
     """the particles are half cells; sides of disks in one row, not free_field"""
 
@@ -138,8 +138,8 @@ class BearingDashpots(Dashpots):
     """Dashpots that, at the bottom and beside a free-field column, may have springs on relative motion beside them."""
 
     bearing: bool | Bearing | None = quantity(None)
-    """whether a bottom or free-field side has springs on the motion relative to the ground beyond it, which bear what
-    forces at rest do not; or a table of their factors alpha_n and alpha_s; absent: where the side has an intact zone"""
+    """whether a bottom or free-field side has springs on the motion relative to the ground beyond; or a table of their
+    alpha_n and alpha_s; absent: where it has an intact zone"""
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Springs of a side beyond which no ground is known to move."""

@@ -72,20 +72,19 @@ class Run(Table):
     checkpoint: float = quantity(300.0, unit="s", means="wall time", ge=0.0)
     """wall time between checkpoints; 0: none"""
     until: Literal["duration", "silent", "peak", "rest"] = quantity("duration")
-    """when it ends: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a wave
-    moves have passed their peaks; "rest": of disks, what fell is at rest"""
+    """its end: "duration"; before, "silent": all monitors are so; "peak": the forces on all sides that a wave moves
+    have passed their peaks; "rest": disks that fell are at rest"""
     silent_level: float = quantity(1e-3, means="share", gt=0.0, lt=1.0)
-    """share of its own peak so far below which a monitor's velocity is silent"""
+    """share of its peak so far below which a velocity is silent"""
     silent_for: float | None = quantity(None, unit="s", gt=0.0)
     """time over which all monitors must be silent; absent: the longest wave, or echo from a side"""
 
     peak_share: float = quantity(0.7, means="share", gt=0.0, lt=1.0)
-    """share of its peak, from the force at the start, below which a side's force has fallen"""
+    """share of its peak below which a side's force has fallen"""
     peak_for: float | None = quantity(None, unit="s", gt=0.0)
-    """time for which all forces must have fallen; absent: until the slowest wave has crossed the body twice"""
+    """time for which all forces must have fallen; absent: that in which the slowest wave crosses the body twice"""
     rest_for: float | None = quantity(None, unit="s", gt=0.0)
-    """time for which the kinetic energy must be below 1e-3 of that of the fall; absent: that of a free fall from the
-    height of the body"""
+    """time for which what fell must be at rest; absent: a free fall from the height of the body"""
 
     @property
     def is_test(self) -> bool:
@@ -121,17 +120,17 @@ class Output(Table):
     history_interval: float = quantity(0.0, unit="s", ge=0.0)
     """time between samples of histories; 0: every step"""
     side_interval: float = quantity(0.0, unit="s", ge=0.0)
-    """time between samples of sides; 0: every eighth step, or a longer history_interval"""
+    """time between samples of sides; 0: every eighth step, or the history_interval"""
     energy_interval: float = quantity(0.0, unit="s", ge=0.0)
-    """time between entries of the ledger; 0: a hundred over the run"""
+    """time between entries of the ledger; 0: a hundred"""
     snapshots: int = quantity(1, means="count", ge=0, le=MOST_SNAPSHOTS)
-    """whole-scene snapshots, evenly spaced, the last at the end; [static] adds one at rest"""
+    """snapshots of the scene, the last at the end; [static] adds one at rest"""
     stress: bool = quantity(False)
     """stress of every particle in snapshots"""
     contacts: bool = quantity(False)
     """forces of every contact and bond in snapshots"""
     paraview: ParaView = quantity("vtu")
-    """snapshots for ParaView: "vtu", a file for each; "vtkhdf", one file of all; "both"; "none" """
+    """snapshots for ParaView: "none"; "vtu", a file for each; "vtkhdf", one of all; or "both" of these"""
     peaks: bool = quantity(False)
     """largest speed of every particle in the run"""
     load_factor: bool = quantity(False)
@@ -188,7 +187,7 @@ class Sweep(Table):
     vary: Vary = quantity({})
     """key -> list of values, or range such as "1:20" or, with a step, "0:100:25" """
     together: bool = quantity(False)
-    """the first values of all keys are one member, the second ones the next; else all combinations"""
+    """first values of all keys are one member, second ones the next; else all combinations"""
     action: Action = quantity("run")
     """action for every member"""
     method: Method = quantity("impedance")

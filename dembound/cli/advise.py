@@ -216,7 +216,7 @@ def _write(best: Proposal, text: str, target: Path) -> None:
 
 
 Repeat = Annotated[
-    bool, Option("--repeat", help="Repeat the run with 0.98 of its time step, to see what of the cracks is chance.")
+    bool, Option("--repeat", help="Repeat the run with 0.98 of its step, to see what of the cracks is chance.")
 ]
 
 Spent = Annotated[

@@ -140,7 +140,7 @@ def ending_in(*endings: str) -> Callable[[typer.CallbackParam, Path | None], Pat
 
 png = ending_in(".png")
 PICTURE = Option("--output", "-o", help="Picture (PNG).", callback=png)
-PictureTitle = Annotated[str | None, Option("--title", help="Title of the picture; by default its content.")]
+PictureTitle = Annotated[str | None, Option("--title", help="Title of the picture.")]
 
 
 def at_most(limit: int) -> Callable[[typer.CallbackParam, Any], Any]:
@@ -175,7 +175,7 @@ Vary = Annotated[
 Scheduler = Annotated[
     str | None, Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
 ]
-Name = Annotated[str | None, Option(help="Name of the results folder; by default the case file's.")]
+Name = Annotated[str | None, Option(help="Name of the results; by default the case file's.")]
 
 
 class Side(StrEnum):

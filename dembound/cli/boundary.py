@@ -54,10 +54,10 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
+        Option("--angle", help="Degrees from the side's normal. May be repeated."),
     ] = None,
     frequencies: Annotated[
-        list[float] | None, Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated.")
+        list[float] | None, Option("--frequency", help="Hz; by default those of the case's waves. May be repeated.")
     ] = None,
     types: Annotated[
         list[str] | None,
@@ -73,9 +73,7 @@ def boundary(
     table: CurveTable = None,
     longest: Annotated[
         float,
-        Option(
-            "--longest", min=0.0, metavar="SECONDS", help="CPU seconds, about, within which frequencies are measured."
-        ),
+        Option("--longest", min=0.0, metavar="SECONDS", help="CPU seconds within which frequencies are measured."),
     ] = LONGEST,
     changes: Settings = None,
 ) -> None:

@@ -44,22 +44,16 @@ WaveType = Literal["p", "s"]
 def calibrate_sides(
     case: OneCase,
     *,
-    boundary: Annotated[
-        Side | None, Option("--boundary", "-b", help="Side to calibrate; required without --all.")
-    ] = None,
+    boundary: Annotated[Side | None, Option("--boundary", "-b", help="Side to calibrate, without --all.")] = None,
     every: Annotated[
         bool, Option("--all", "-a", help="Every side with dashpots, for both waves that can move it.")
     ] = False,
-    wave: Annotated[
-        WaveType | None, Option(help="P or S; by default the wave that runs towards this side, else P.")
-    ] = None,
+    wave: Annotated[WaveType | None, Option(help="Wave; by default that which runs towards this side, else P.")] = None,
     how: Calibrating,
     output: Output = Path("results"),
     calibrated: Annotated[
         Path | None,
-        Option(
-            metavar="FILE", help="Calibrated case; by default NAME_calibrated.toml beside the case.", callback=writable
-        ),
+        Option(metavar="FILE", help="Calibrated case; by default NAME_calibrated.toml.", callback=writable),
     ] = None,
     changes: Settings = None,
     name: Name = None,

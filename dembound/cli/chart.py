@@ -51,7 +51,7 @@ def chart(
     repeats: Annotated[
         int | None, Option(min=1, callback=few, help="Timed runs of every choice; by default 3, or the case's.")
     ] = None,
-    resume: Annotated[bool, Option("--resume", help="Only choices that an earlier chart does not have.")] = False,
+    resume: Annotated[bool, Option("--resume", help="Only choices that the chart does not have.")] = False,
     output: Output = Path("results"),
     title: PictureTitle = None,
     changes: Settings = None,

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 def exact(
     path: Annotated[Path, Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
     problem: Annotated[
-        str | None, Option(help="lamb, cavity, garvin or scattering; by default the one that holds longest.")
+        str | None, Option(help="lamb, cavity, garvin or scattering; by default that which holds longest.")
     ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
@@ -178,15 +178,11 @@ def _simulated(shown: Sequence[Lattice]) -> list[Points]:
 @app.command("stability", rich_help_panel=MORE)
 def stability(
     case: OneCase,
-    steps: Annotated[
-        int | None, Option(help="Steps of noise at the case's own time step; by default 5,000 to 100,000.", min=1)
-    ] = None,
-    full: Annotated[bool, Option("--full", help="The whole scene instead of fewer copies of its brick.")] = False,
-    strength: Annotated[
-        bool, Option("--strength", help="How near the ground is to failure under its weight, not the step.")
-    ] = False,
+    steps: Annotated[int | None, Option(help="Steps of noise at the case's own time step.", min=1)] = None,
+    full: Annotated[bool, Option("--full", help="The whole scene, not fewer copies of its brick.")] = False,
+    strength: Annotated[bool, Option("--strength", help="How near the ground is to failure, not the step.")] = False,
     tolerance: Annotated[
-        float | None, Option(help="Relative width of the brackets of --strength; by default 0.02.")
+        float | None, Option(help="Relative width of brackets of --strength; by default 0.02.")
     ] = None,
     output: Annotated[
         Path | None,

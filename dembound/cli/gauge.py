@@ -39,15 +39,13 @@ class EvaluationOptions:
     spall: Annotated[float | None, Option(help="Where the bar spalled, from the loaded end (m).")] = None
     free_end: Annotated[
         str | None,
-        Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
+        Option(metavar="NAME", help="Monitor at the free end, or a text file of s and m/s."),
     ] = None
     estimate: Annotated[
-        bool, Option("--estimate", help="Speed and attenuation from tension peaks, though results have them.")
+        bool, Option("--estimate", help="Speed and attenuation from tension peaks, also of results.")
     ] = False
-    peaks: Annotated[int | None, Option(help="Number of first tension peaks for speed and attenuation.", min=2)] = None
-    pulse_end: Annotated[
-        float | None, Option(help="When the incident pulse has passed (s); by default when it returns.")
-    ] = None
+    peaks: Annotated[int | None, Option(help="Tension peaks for speed and attenuation.", min=2)] = None
+    pulse_end: Annotated[float | None, Option(help="When the incident pulse has passed (s).")] = None
     wave_speed: Annotated[float | None, Option(help="Wave speed (m/s) of another test.")] = None
     attenuation: Annotated[float | None, Option(help="Attenuation (1/m) of another test.")] = None
 
@@ -66,7 +64,7 @@ class EvaluationOptions:
 def gauge(
     record: Annotated[Path, Argument(metavar="RECORD", help="Text file of time and signal, or a run's results.")],
     monitor: Annotated[str | None, Option(metavar="NAME", help="Monitor of the results.")] = None,
-    position: Annotated[float | None, Option(help="Position of the gauge from the loaded end (m).")] = None,
+    position: Annotated[float | None, Option(help="From the loaded end to the gauge (m).")] = None,
     length: Annotated[float | None, Option(help="Length of the bar (m).")] = None,
     density: Annotated[float | None, Option(help="Density of the bar (kg/m³), for --free-end and for E = ρc².")] = None,
     *,
@@ -143,7 +141,7 @@ def _error(error: float) -> str:
 
 
 Window = Annotated[
-    tuple[float, float] | None, _of_pulses(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found.")
+    tuple[float, float] | None, _of_pulses(metavar="FROM TO", help="Of this pulse (s); by default found.")
 ]
 Column = Annotated[str | None, of_file(metavar="NAME|NUMBER", help="Its column, or monitor of results.")]
 

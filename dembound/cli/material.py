@@ -84,9 +84,7 @@ def laboratory(
     kind: Annotated[str, Argument(metavar="TEST", help="ucs, tension, brazilian or biaxial.")],
     case: Annotated[Path, Argument(metavar="CASE", help="A case file (TOML) of disks with strengths.")],
     *,
-    seeds: Annotated[
-        int, Option(min=1, callback=few, help="Samples, whose packings have seeds packing.seed and above.")
-    ] = 4,
+    seeds: Annotated[int, Option(min=1, callback=few, help="Samples, of seeds packing.seed and above.")] = 4,
     pressures: Annotated[
         str | None, Option(metavar="PA,PA,…", help="Pressures at the sides, for biaxial, e.g. 0,5e6,10e6.")
     ] = None,
@@ -266,9 +264,7 @@ SEEDS = 8
 def material(
     case: OneCase,
     *,
-    ucs: Annotated[
-        float | None, Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples of the material.")
-    ] = None,
+    ucs: Annotated[float | None, Option(min=0.0, help="Uniaxial compressive strength (Pa) to give samples.")] = None,
     tension: Annotated[
         float | None, Option(min=0.0, help="Tensile strength (Pa) to give them, by direct tension.")
     ] = None,

@@ -98,7 +98,7 @@ Component = Literal["x", "y", "both", "rotation"]
 """Components of the monitors' motion."""
 
 
-CurveTable = Annotated[Path | None, Option("--table", help="Table of the curves (CSV).", callback=writable)]
+CurveTable = Annotated[Path | None, Option("--table", help="Curves (CSV).", callback=writable)]
 QuantityOfMonitors = Annotated[
     Quantity | None,
     Option(
@@ -148,7 +148,7 @@ class Plotted:
     monitor: Monitors = None
     boundary: Annotated[
         Side | None,
-        Option(help="This side's diameters and peak velocities, with --quantity stress or displacement its mean."),
+        Option(help="This side's peak velocities, with --quantity stress or displacement its mean."),
     ] = None
     energy: Annotated[bool, Option("--energy", help="The energy ledger of one run.")] = False
     field: Annotated[
@@ -160,9 +160,7 @@ class Plotted:
     ] = None
     snapshot: Annotated[
         int | None,
-        Option(
-            help="Number of the snapshot of --field, −1 the last; by default that of the largest values, of a bar all."
-        ),
+        Option(help="Number of the snapshot, −1 the last; by default that of the largest values."),
     ] = None
     exaggerate: Exaggerated = None
     table: Annotated[Path | None, Option(help="Table of the lines drawn (CSV).", callback=writable)] = None

@@ -78,9 +78,7 @@ def compare_histories(
     quantity: Annotated[
         Quantity, Option(metavar="QUANTITY", help=f"Quantity: {names_of(Quantity)}; the stress of bars alone.")
     ] = "velocity",
-    as_recorded: Annotated[
-        bool, Option("--as-recorded", help="No correction for waves that enter disks later or earlier.")
-    ] = False,
+    as_recorded: Annotated[bool, Option("--as-recorded", help="No correction for later entry of waves.")] = False,
 ) -> None:
     """Print the errors of histories against those of a reference run.
 

@@ -115,9 +115,7 @@ class SignalsShown:
     quantity: QuantityOfMonitors = None
     component: ComponentOfMotion = None
     monitor: Monitors = None
-    reference: Annotated[
-        str | None, Option(metavar="NAME", help="Monitor that is the input, of transfer or surface.")
-    ] = None
+    reference: Annotated[str | None, Option(metavar="NAME", help="Input of transfer or surface.")] = None
 
     def problems(self, show: Shown, count: int) -> Iterator[str]:
         """Options that have no effect on what is shown, for a number of results."""

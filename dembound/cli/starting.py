@@ -24,9 +24,7 @@ app.add_typer(cases, name="cases", rich_help_panel=MORE)
 
 @app.command("new")
 def new(
-    path: Annotated[
-        Path, Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
-    ] = Path("case.toml"),
+    path: Annotated[Path, Argument(metavar="FILE", help="File to write.")] = Path("case.toml"),
     start: Annotated[
         str | None,
         Option(
@@ -135,7 +133,7 @@ def copy(
     ],
     folder: Annotated[Path, Argument(metavar="FOLDER", help="Where to.")] = Path(),
 ) -> None:
-    """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
+    """Copy a case, or a group, with the files they read. Overwrites nothing."""
     print_written(*shipped.copy(name, folder))
 
 

@@ -63,14 +63,12 @@ def sweep(
     vary: Vary = None,
     together: Annotated[
         bool | None,
-        Option("--together/--product", help="First values of all keys together, then the second ones, and so on."),
+        Option("--together/--product", help="First values of all keys together, then the second ones."),
     ] = None,
     action: Annotated[
         SweepAction | None, Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
     ] = None,
-    method: Annotated[
-        Method | None, Option(metavar="METHOD", help="Method of calibration, see `dembound calibrate`.")
-    ] = None,
+    method: Annotated[Method | None, Option(metavar="METHOD", help="Method of calibration.")] = None,
     processes: Annotated[
         int | None, Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
     ] = None,

@@ -117,11 +117,11 @@ class GroundOptions:
 
     deconvolve: Annotated[
         Path | None,
-        Option(metavar="CASE", help="Take the record as the surface of this case, and write the incident wave below."),
+        Option(metavar="CASE", help="Write the incident wave below the surface of this case."),
     ] = None
     kinds: Annotated[
         list[Kind] | None,
-        Option("--as", help="Kind of wave of each component in --deconvolve; by default the case's only one."),
+        Option("--as", help="Wave of each component in --deconvolve."),
     ] = None
     damping: Annotated[
         Damping,
@@ -132,9 +132,7 @@ class GroundOptions:
     ] = "as_run"
     transfer: Annotated[
         Path | None,
-        Option(
-            metavar="NAME.png", help="Transfer functions of the ground in --deconvolve (PNG and CSV).", callback=png
-        ),
+        Option(metavar="NAME.png", help="Transfer functions of the ground (PNG and CSV).", callback=png),
     ] = None
 
     def require_kinds(self, channels: Sequence[Channel]) -> None:

@@ -17,7 +17,7 @@ class Ellipse(Centred):
 
     type: Literal["ellipse"]
     semi_axes: tuple[Length, Length] = quantity(unit="m", means="length")
-    """[a, b], half its length and half its width"""
+    """[a, b], half its length and width"""
     angle: float = quantity(0.0, unit="degrees", means="direction")
     """from the x axis to the semi-axis a, counter-clockwise"""
 

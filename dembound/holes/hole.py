@@ -32,8 +32,8 @@ class Hole(Table, ABC):
     name: FileName = quantity()
     """name in loads and messages"""
     stage: Literal["before", "after", "run"] = quantity("before")
-    """ "before": the body is built with the hole; "after": excavated after the static stage, which then goes on; "run":
-    excavated at a time of the run"""
+    """"before": built with the body; "after": excavated after the static stage, which then goes on; "run": at a time of
+    the run"""
     time: float | None = quantity(None, unit="s", ge=0.0)
     """time of the run at which its disks vanish, with stage = "run" """
     keep: Literal["outside", "inside"] = quantity("outside")

@@ -185,7 +185,7 @@ class DensePacking(Packing):
     seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
     """seed of the random start"""
     confining_stress: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
-    """pressure the brick is packed under, from 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it"""
+    """pressure of packing, 1e-5 to 0.1 of the contact modulus; absent: 8e-3 of it"""
     bond_gap: float = quantity(0.0, unit="m", means="length", ge=0.0)
     """gaps up to this are contacts, too"""
 

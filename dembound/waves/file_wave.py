@@ -56,15 +56,14 @@ class FileWave(Wave):
 
     type: Literal["file"]
     path: str = quantity(min_length=1)
-    """text file, relative to the folder of the case, of time (s) and velocity (m/s) or the factor of a load; separated
-    by blanks or semicolons, in a .csv file by commas"""
+    """text file of time (s) and velocity (m/s) or the factor of a load, in columns by blanks or semicolons, in a .csv
+    file commas"""
     scale: NonZero = quantity(1.0, means="factor")
     """factor of the file's values"""
 
     interpolation: Literal["band_limited", "lines"] | None = quantity(None)
-    """ "lines" between samples, or the "band_limited" function through even samples, with frequencies up to 0.4 of
-    the sampling rate; absent: band_limited for a record (20 even samples, 6 changes of sign, ends within 2 % of the
-    peak)"""
+    """"lines", or the "band_limited" function, up to 0.4 of the sampling rate; absent: band_limited for a record (20
+    even samples, 6 changes of sign, ends within 2 % of the peak)"""
 
     _samples: Polyline = PrivateAttr()
     _line: Polyline = PrivateAttr()

@@ -104,8 +104,8 @@ class Wave(Table, ABC):
     start: float = quantity(0.0, unit="s", ge=0.0)
     """time at which the wave begins"""
     motion: Literal["incident", "outcrop", "within"] | None = quantity(None)
-    """what moves so: the "incident" wave; a free "outcrop" of the rock, twice as fast; the ground at the side,
-    "within"; absent: incident, at sides of prescribed velocity within"""
+    """what moves so: the "incident" wave; a free "outcrop" of the rock; the ground at the side, "within"; absent:
+    incident, at sides of prescribed velocity within"""
 
     @property
     def share(self) -> float:

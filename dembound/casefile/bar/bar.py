@@ -45,7 +45,7 @@ class BarRange(Table):
     attenuation: float | None = quantity(None, unit="1/m", ge=0.0)
     """α of its attenuation"""
     velocity: float = quantity(0.0, unit="m/s", means="velocity")
-    """velocity of the whole range at the start, positive to the right, as of a striker"""
+    """velocity at the start, positive to the right, as of a striker"""
     interface: Literal["bonded", "contact"] = quantity("bonded")
     """interface with the range on its left; a contact bears no tension"""
     gap: float = quantity(0.0, unit="m", means="gap", ge=0.0)
@@ -85,7 +85,7 @@ class Bar(Table):
     """
 
     length: float = quantity(None, unit="m", means="length", gt=0.0)
-    """length L; with ranges it is that of all with their gaps, and may be left out"""
+    """length L; with ranges it may be left out"""
     spacing: float = quantity(unit="m", means="length", gt=0.0)
     """distance Δx from node to node; L is a whole number of them, two or more"""
     section: float | None = quantity(None, unit="m²", gt=0.0)
@@ -105,9 +105,9 @@ class Bar(Table):
     fracture_energy: float | None = quantity(None, unit="J/m²", gt=0.0)
     """fracture energy G_f of cracks; absent: bonds break at once"""
     strength_per_decade: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
-    """rise of the strength for a tenfold strain rate, within strength_rates; needs fracture_energy"""
+    """rise of the strength for a tenfold strain rate; needs fracture_energy"""
     strength_rates: tuple[float, float] | None = quantity(None, unit="1/s")
-    """strain rates [slowest, fastest] between which the strength rises; below it is strength"""
+    """strain rates [slowest, fastest] between which it rises"""
     attenuation: float = quantity(0.0, unit="1/m", ge=0.0)
     """α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)"""
     range: tuple[BarRange, ...] = quantity(())

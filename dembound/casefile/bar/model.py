@@ -39,7 +39,7 @@ class BarLoad(Table):
     nodes: int = quantity(1, means="count", ge=1, le=MOST_CELLS + 1)
     """number of nodes it is spread over, from the end inwards"""
     wave: str = quantity()
-    """name of the wave that is the time factor"""
+    """wave that is the time factor"""
 
 
 class BarMonitor(Table):

@@ -31,12 +31,12 @@ class Ground(Table):
     """
 
     size: Extent | None = quantity(None, unit="m", means="length")
-    """width and height, whole bricks high; absent: the disks fill all of the ground"""
+    """width and height, whole bricks high; absent: that of the disks"""
     origin: tuple[float, float] = quantity((0.0, 0.0), unit="m", means="place")
     """lower left corner of the ground"""
     surface: Points | str | None = quantity(None, unit="m", means="place")
-    """free surface from left to right: points [[x, y], …], or a text file of x and y in m, relative to the folder of
-    the case; level over four diameters at the sides of the disks; absent: the top of the disks"""
+    """free surface from left to right: points [[x, y], …], or a text file of x and y; level over four diameters at the
+    sides of the disks; absent: their top"""
     meet: float | None = quantity(None, unit="m", means="place")
     """x of the vertical plane between layers of side "left" and "right" """
 

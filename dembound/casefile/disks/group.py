@@ -38,13 +38,13 @@ class GroupTable(Differing):
     """
 
     name: FileName = quantity()
-    """name of the group in messages and pictures"""
+    """name in messages and pictures"""
     region: Box | None = quantity(None, unit="m", means="place")
-    """rectangle [x0, y0, x1, y1] of its disks, by their centres; or points"""
+    """rectangle [x0, y0, x1, y1] of its disks; or points"""
     points: Points | None = quantity(None, unit="m", means="place")
-    """corners [[x, y], …] of a polygon in order, three or more, the last joined to the first; or region"""
+    """corners [[x, y], …] of a polygon; or region"""
     time: float | None = quantity(None, unit="s", ge=0.0)
-    """time of the run from which on its friction and strengths hold, 0 at its beginning; absent: always"""
+    """time of the run from which on its friction and strengths hold; absent: always"""
 
     def mistakes(self) -> Iterator[str]:
         """Not one place, nothing that differs, or keys that cannot change in time."""

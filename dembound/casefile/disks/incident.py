@@ -24,13 +24,13 @@ class Damping(Table):
     """
 
     type: Literal["quality", "rayleigh"] = quantity("quality")
-    """ "quality": nearly constant Q; "rayleigh": drag αm and βdF/dt, with ξ = 1/(2Q) at both ends of the band"""
+    """"quality": nearly constant Q; "rayleigh": ξ = 1/(2Q) at both ends of the band"""
     band: tuple[float, float] | None = quantity(None, unit="Hz")
-    """lowest and highest frequency of nearly constant Q; absent: that of the waves, or 0.3 to 10 Hz"""
+    """lowest and highest frequency of Q; absent: that of the waves, or 0.3 to 10 Hz"""
     frequency: float | None = quantity(None, unit="Hz", gt=0.0)
-    """frequency at which the wave speeds and moduli hold; absent: the geometric mean of the band"""
+    """frequency at which speeds and moduli hold; absent: the geometric mean of the band"""
     mechanisms: int = quantity(3, means="count", ge=2, le=6)
-    """relaxation mechanisms; 3 keep 1/Q within 1 % over 0.3 to 10 Hz"""
+    """relaxation mechanisms"""
 
     def mistakes(self) -> Iterator[str]:
         """A band that does not ascend, and keys of mechanisms without any."""
@@ -106,9 +106,9 @@ class IncidentWave(Table):
     type: Literal["sv", "p"] = quantity()
     """kind of wave: SV or P"""
     angle: float = quantity(unit="degrees", means="direction", gt=-90.0, lt=90.0)
-    """from the vertical, of the direction in which it runs, in the lowest layer; positive to the right"""
+    """of its direction from the vertical, in the lowest layer; positive to the right"""
     wave: str = quantity()
-    """name of the wave whose velocity it has"""
+    """wave whose velocity it has"""
     point: tuple[float, float] | None = quantity(None, unit="m", means="place")
     """where the incident wave has this velocity; absent: the lower corner of the ground it reaches first"""
 

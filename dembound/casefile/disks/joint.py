@@ -37,7 +37,7 @@ class JointKeys(Table):
     """The name of a joint, or of a set, and the constants of its faces."""
 
     name: FileName = quantity()
-    """name of the joint in messages and results; of a set without the numbers"""
+    """name; of a set without the numbers"""
     kn: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
     """normal stiffness per area"""
     ks: float = quantity(unit="Pa/m", means="stiffness of a joint", gt=0.0)
@@ -49,7 +49,7 @@ class JointKeys(Table):
     coh: float = quantity(0.0, unit="Pa", means="strength", ge=0.0)
     """cohesion"""
     dilation: float = quantity(0.0, unit="degrees", means="direction", ge=0.0, lt=90.0)
-    """angle at which the faces ride up on each other as they slide, below that of fric"""
+    """angle at which faces that slide ride up on each other, below that of fric"""
     dilation_end: float | None = quantity(None, unit="m", means="length", gt=0.0)
     """slip at which they rise no more; absent: at none"""
     dashpot: float = quantity(1.0, means="factor", ge=0.0, le=10.0)

@@ -37,17 +37,17 @@ class JointTable(JointKeys):
     """
 
     points: Points | None = quantity(None, unit="m", means="place")
-    """the line: points [[x, y], …] in order, two or more, with kinks of up to 10°; or give dip"""
+    """the line: points [[x, y], …], with kinks of up to 10°; or give dip"""
     dip: float | None = quantity(None, unit="degrees", means="direction", ge=-90.0, le=90.0)
-    """of a set: the angle below the horizontal at which its lines fall towards +x"""
+    """of a set: angle below the horizontal, falling towards +x"""
     spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
     """distance from one line of a set to the next, across them"""
     persistence: float = quantity(1.0, means="share", gt=0.0, le=1.0)
     """share of the lines of a set that is cut; the rest is rock"""
     trace: float | None = quantity(None, unit="m", means="length", gt=0.0)
-    """mean length of the cuts, drawn between half of it and one and a half, as are the bridges between them"""
+    """mean length of the cuts"""
     region: Box | Points | None = quantity(None, unit="m", means="place")
-    """where a set is: a box [x0, y0, x1, y1], or corners [[x, y], …] of a polygon; absent: everywhere"""
+    """where a set is: [x0, y0, x1, y1], or corners of a polygon; absent: everywhere"""
     seed: int = quantity(0, means="count", ge=0, le=LARGEST_WHOLE)
     """seed of the places of a set"""
 

@@ -76,7 +76,7 @@ class LayerTable(Differing):
     """
 
     name: FileName | None = quantity(None)
-    """name in results; absent: its number, from 1 at the surface"""
+    """name; absent: its number, from 1 at the surface"""
     thickness: float | None = quantity(None, unit="m", means="length", gt=0.0)
     """thickness; the last layer may have none and goes on below"""
     bottom: float | None = quantity(None, unit="m", means="place")
@@ -238,11 +238,11 @@ class OutsideTable(Table):
     element: float | None = quantity(None, unit="m", means="length", gt=0.0)
     """largest side of an element; absent: from waves and accuracy"""
     margin: int | None = quantity(None, means="count", ge=1, le=MOST_ELEMENTS)
-    """elements between the particles and those that absorb; absent: 1, more under lasting loads"""
+    """elements before those that absorb; absent: 1, more under lasting loads"""
     layers: int | None = quantity(None, means="count", ge=2, le=MOST_ELEMENTS)
-    """elements that absorb, one behind the other, five wider ones more beside layers; absent: from accuracy"""
+    """elements that absorb, one behind the other; absent: from accuracy"""
     reflection: float | None = quantity(None, means="share", gt=0.0, lt=1.0)
-    """R0, amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10"""
+    """R0, what a P wave keeps through the layers and back; absent: accuracy/10"""
     shift: float = quantity(0.3, means="setting", gt=0.0)
     """α of the layers over c_p/2L, L being the larger side of what lies within them"""
     delay: float = quantity(0.1, means="setting", ge=0.0)

@@ -29,9 +29,9 @@ class Load(Table):
     """
 
     name: FileName = quantity()
-    """name of the load in messages and results"""
+    """name in messages and results"""
     force: Vector | None = quantity(None, unit="N/m")
-    """force [fx, fy] on all its particles together; needs position or region"""
+    """force [fx, fy] on all of them; needs position or region"""
     acceleration: Vector | None = quantity(None, unit="m/s²")
     """force [ax, ay] per mass of each particle"""
     position: Vector | None = quantity(None, unit="m", means="place")
@@ -45,9 +45,9 @@ class Load(Table):
     sides: tuple[Literal["left", "right", "bottom", "top"], ...] | None = quantity(None, min_length=1)
     """sides on which a steady pressure acts, as round a sample"""
     on: Literal["outline", "bonds"] = quantity("outline")
-    """where a pressure acts: on the true outline of the hole, or on the bonds that it cuts"""
+    """where a pressure acts: on the true outline, or on the bonds that it cuts"""
     wave: str | None = quantity(None)
-    """name of the wave that is the time factor; absent: steady, from the static stage on"""
+    """wave that is the time factor; absent: steady"""
 
     @property
     def key(self) -> str:
@@ -181,6 +181,6 @@ class Monitor(Table):
     name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()
     """name of the history in the results"""
     position: tuple[float, float] = quantity(unit="m", means="place")
-    """where; between equally near particles the lowest is taken, of these the leftmost"""
+    """where; of equally near particles the lowest, of these the leftmost"""
     points: tuple[tuple[float, float], ...] | None = quantity(None, unit="m", means="place")
     """corners of a polygon, of whose particles the mean is recorded"""

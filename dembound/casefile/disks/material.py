@@ -48,11 +48,11 @@ class MaterialTable(Table):
     p_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
     """P-wave speed from which the moduli follow"""
     match: Literal["lattice", "assembly"] = quantity("lattice")
-    """body with this p_wave_speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x"""
+    """body with this speed: "lattice", the square lattice (Z eq. 11); "assembly", the packing along x"""
     contact_share: float = quantity(0.5, means="share", ge=0.0, le=1.0)
-    """share α_c of the contacts in the stiffness (Z eq. 9), bonds have the rest; 0 in pattern A only"""
+    """share α_c of the contacts in the stiffness (Z eq. 9); 0 in pattern A only"""
     s_wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", gt=0.0)
-    """S-wave speed of the body; beside emod and pb_emod of the boundaries only; absent: the packing's own"""
+    """S-wave speed; beside emod and pb_emod of the boundaries only; absent: the packing's own"""
     young: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
     """Young's modulus of the body"""
     poisson: float | None = quantity(None, means="Poisson's ratio", gt=-1.0, lt=1.0)
@@ -62,7 +62,7 @@ class MaterialTable(Table):
     shear: float | None = quantity(None, unit="Pa", means="modulus", gt=0.0)
     """shear modulus of the body"""
     plane: Literal["strain", "stress"] = quantity("strain")
-    """which young, poisson, bulk are meant: "strain", of the solid in plane strain; "stress", of the 2D sample"""
+    """in plane "strain", young, poisson, bulk are of the solid; in "stress" of the 2D sample"""
     along: Literal["isotropic", "x", "y"] = quantity("isotropic")
     """direction with the targets: "isotropic", the mean over all; "x", "y": waves or a test along it"""
     emod: float | None = quantity(None, unit="Pa", means="modulus", ge=0.0)
@@ -76,34 +76,34 @@ class MaterialTable(Table):
     fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
     """friction coefficient of the contacts; at 0 they carry no shear"""
     rr_fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
-    """resistance of contacts without bonds to rolling: their moment is at most this times R̄ N; needs fric"""
+    """resistance of contacts without bonds to rolling: moment of at most this times R̄ N; needs fric"""
     pb_rmul: float = quantity(1.0, means="bond radius", gt=0.0)
     """bond radius over the smaller disk's radius"""
     damp: float = quantity(0.0, means="local damping", ge=0.0, lt=1.0)
-    """local damping coefficient; 0 for waves"""
+    """local damping coefficient"""
     dp_nratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
-    """normal dashpot of closed contacts over the critical one; it does not pull (PFC's dp_mode 1)"""
+    """normal dashpot of closed contacts over the critical one (PFC's dp_mode 1)"""
     dp_sratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
     """shear dashpot of closed contacts over the critical one; needs fric"""
     dp_on: Literal["unbonded", "all"] | None = quantity(None)
-    """contacts with dashpots: "unbonded", without an intact bond; "all"; absent: "unbonded" if bonds can break"""
+    """contacts with dashpots: "all", or those without an intact bond, "unbonded"; absent: these if bonds can break"""
     quality_factor: float | None = quantity(None, means="quality factor", ge=2.0, le=1e4)
     """quality factor Q of P and S waves, see [damping]; absent: no damping"""
     law: LawName = quantity(
         "elastic", help="; ".join(f'"{name}": {law.help}' for name, law in LAWS.items() if law.help)
     )
     pb_ten: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
-    """tensile strength of the bonds; absent: unbreakable in tension"""
+    """tensile strength of the bonds; absent: unbreakable"""
     pb_coh: float | None = quantity(None, unit="Pa", means="strength", gt=0.0)
-    """cohesion of the bonds, their shear strength without pressure; absent: unbreakable in shear"""
+    """cohesion of the bonds; absent: unbreakable in shear"""
     pb_fa: float = quantity(0.0, unit="degrees", means="friction angle", ge=0.0, lt=90.0)
     """friction angle of the bonds; needs pb_coh"""
     pb_mcf: float = quantity(1.0, means="share", ge=0.0, le=1.0)
-    """share of the moment that counts in the stress of bonds (PFC's moment contribution factor)"""
+    """share of the moment in the stress of bonds (PFC's moment contribution factor)"""
     pb_scatter: Scatter | None = quantity(None)
-    """scatter of both strengths from bond to bond, a table; absent: none"""
+    """scatter of both strengths, a table; absent: none"""
     locked_in: float | None = quantity(None, unit="Pa", means="stress", gt=0.0)
-    """pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: they just touch"""
+    """pressure of the contacts before the static stage, up to 0.1 of their modulus; absent: none"""
     geometry: Literal["updated", "reference"] = quantity("updated")
     """ "updated": normals and arms follow the motion; "reference": intact bonds keep those of the start"""
     elastic_start: bool = quantity(True)

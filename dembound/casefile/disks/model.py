@@ -32,15 +32,14 @@ class Reduce(Table):
     rows: bool = quantity(True)
     """whether rows of disks that move identically are stepped as one"""
     settled: bool = quantity(False)
-    """whether the elastic law serves again after a static stage if nothing is open or slides"""
+    """whether the elastic law serves after a static stage if nothing is open or slides"""
 
 
 class DiskRun(Run):
     """The simulated time and the time step of disks, and what becomes of disks that have fallen far below the scene."""
 
     far: Literal["keep", "retire"] = quantity("keep")
-    """disks that touch nothing and have fallen below the base by more than the height of the scene: "keep", they fall
-    on; "retire", they stop there, and their energy counts as damping"""
+    """disks below the base by more than the height of the scene: "keep", they fall on; "retire", they stop"""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -36,13 +36,13 @@ class MonitorTable(Table):
     """
 
     name: Annotated[FileName, AfterValidator(is_no_twin)] = quantity()
-    """name of the history in the results; of a row without the numbers"""
+    """name of the history; of a row without the numbers"""
     position: tuple[float, float] | None = quantity(None, unit="m", means="place")
-    """where; between equally near particles the lowest is taken, of these the leftmost"""
+    """where; of equally near particles the lowest, of these the leftmost"""
     points: Points | None = quantity(None, unit="m", means="place")
-    """corners [[x, y], …] of a polygon, three or more, of whose particles the mean is recorded; instead of position"""
+    """corners [[x, y], …] of a polygon, of whose particles at the start the mean by mass is recorded"""
     along: Literal["surface"] | None = quantity(None)
-    """ "surface": a row along the free surface of the ground, instead of position"""
+    """"surface": a row along the free surface"""
     spacing: float | None = quantity(None, unit="m", means="length", gt=0.0)
     """step along x from one monitor of a row to the next"""
     from_: float | None = quantity(None, unit="m", means="place", alias="from")

@@ -42,16 +42,16 @@ class Static(Table):
     k0: float | None = quantity(None, means="ratio of stresses", ge=0.0, le=5.0)
     """stress along x over that along y due to weight; absent: what settling makes"""
     ratio: float | None = quantity(None, means="rest", gt=0.0, lt=1.0)
-    """mean unbalanced over mean contact force at its end; absent: 1e-5, and 1e-7 once contacts slide or open or bonds
-    break"""
+    """mean unbalanced over mean contact force at its end; absent: 1e-5, 1e-7 once contacts slide or open or bonds break
+    """
     damp: float = quantity(0.7, means="share", gt=0.0, lt=1.0)
     """local damping coefficient of the stage"""
     max_steps: int = quantity(200_000, means="count", ge=1, le=MOST_STEPS)
     """steps after which the stage has failed"""
     from_: str | None = quantity(None, alias="from", min_length=1)
-    """folder of the results of a case that has settled the same body, from the current folder; absent: none"""
+    """results of a case that has settled the same body, from the current folder"""
     boundary: Mapping[str, StaticSide] = quantity({})
-    """a table for each side during the stage; an absent side is free"""
+    """a table for each side; an absent side is free"""
 
     def enough(self, *, slides: bool) -> float:
         """The force ratio at which the stage is over; slides : whether under a history-dependent law."""

@@ -32,28 +32,27 @@ class Wall(Table):
     """
 
     name: FileName = quantity()
-    """name of the wall in messages and results"""
+    """name in messages and results"""
     points: Points | str = quantity(unit="m", means="place")
-    """points [[x, y], …] joined by straight lines, or a text file of x and y in m, relative to the folder of the case;
-    the first point again at the end closes it"""
+    """points [[x, y], …], or a text file of x and y; the first one again at the end closes it"""
     fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
     """friction coefficient between disks and wall"""
     rr_fric: float = quantity(0.0, means="friction coefficient", ge=0.0)
-    """resistance to rolling: the moment is at most this times R N of a disk; needs fric > 0"""
+    """resistance to rolling: moment of at most this times R N; needs fric"""
     kn: float | None = quantity(None, unit="N/m", gt=0.0)
-    """normal stiffness of a contact; absent: 2·emod of the material, that of the disk alone"""
+    """normal stiffness of a contact; absent: 2·emod of the material"""
     ks: float | None = quantity(None, unit="N/m", gt=0.0)
     """shear stiffness of a contact; absent: kn over the material's kratio"""
     dp_nratio: float = quantity(0.0, means="share", ge=0.0, le=1.0)
-    """normal dashpot of a contact over the critical one, of the disk's mass; it does not pull"""
+    """normal dashpot of a contact over the critical one"""
     velocity: Velocity | None = quantity(None, unit="m/s", means="velocity")
     """constant velocity [vx, vy]"""
     wave_x: str | None = quantity(None)
-    """name of the wave of its velocity along x"""
+    """wave of its velocity along x"""
     wave_y: str | None = quantity(None)
-    """name of the wave of its velocity along y"""
+    """wave of its velocity along y"""
     moves: Literal["incident"] | None = quantity(None)
-    """ "incident": it moves as a bottom whose velocity is given does, else as the free field at the place `at`"""
+    """"incident": it moves as a bottom of given velocity, else as the free field at the place `at`"""
     at: tuple[float, float] | None = quantity(None, unit="m", means="place")
     """place in the ground whose motion it has; absent: the middle of its box"""
     until: float | None = quantity(None, unit="s", gt=0.0)
