@@ -131,8 +131,8 @@ class Case:
         return 0.0
 
     @property
-    def walls_stop(self) -> float:
-        """Time (s) from which all walls stand; by default there are none."""
+    def last_change(self) -> float:
+        """Time (s) from which the case changes nothing but by waves; by default it never does."""
         return 0.0
 
 

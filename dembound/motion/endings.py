@@ -107,12 +107,13 @@ class RestRule:
 def rest_rule(scene: Scene, sources: Sequence[Source]) -> RestRule:
     """The rule for a case with ``until = "rest"``; scene : the whole one, with its sources and a steady acceleration.
 
-    Rest counts from when all waves have entered and all walls stand. By default it must last as long as a free fall
-    from the height of the body, in which whatever hangs loose would have fallen.
+    Rest counts from when all waves have entered, all walls stand and the ground has changed for the last time.
+    By default it must last as long as a free fall from the height of the body, in which whatever hangs loose would
+    have fallen.
     """
     over = [source.over if np.isfinite(source.over) else source.start for source in sources]
     hold = scene.case.run.rest_for or float(np.sqrt(2.0 * scene.size[1] / scene.case.pull))
-    return RestRule(hold, max([scene.case.walls_stop, *over]))
+    return RestRule(hold, max([scene.case.last_change, *over]))
 
 
 @dataclass(frozen=True)

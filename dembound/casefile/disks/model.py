@@ -15,7 +15,7 @@ from dembound.casefile.disks.joint import Joint
 from dembound.casefile.disks.layer import Layer, OutsideTable, bottoms, stack
 from dembound.casefile.disks.load import Load, Monitor, pull
 from dembound.casefile.disks.material import Material
-from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, can_break, intact_depths
+from dembound.casefile.disks.static import Static, bearing_of, begins_stressed, can_break, changes, intact_depths
 from dembound.casefile.disks.wall import Wall
 from dembound.casefile.messages import numbered
 from dembound.casefile.model import Case
@@ -255,9 +255,10 @@ class DiskCase(Case):
         return pull(self.load)
 
     @property
-    def walls_stop(self) -> float:
-        """Time (s) from which no wall moves by itself; infinite if one does to the end."""
-        return max((wall.stops(self.wave) for wall in self.wall if wall.is_driven), default=0.0)
+    def last_change(self) -> float:
+        """Time (s) from which walls stand groups, holes, ends of reactions have come; infinite if walls never stop."""
+        walls = [wall.stops(self.wave) for wall in self.wall if wall.is_driven]
+        return max([*walls, *(time for _, time in changes(self.group, self.hole, self.static))], default=0.0)
 
     @cached_property
     def intact(self) -> dict[str, int]:

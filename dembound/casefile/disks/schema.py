@@ -26,7 +26,7 @@ from dembound.casefile.disks.load import Load, Monitor, pressed_side_problems, r
 from dembound.casefile.disks.material import BOND_KEYS, ROLLING_KEY, Material
 from dembound.casefile.disks.model import DiskCase, DiskRun, Reduce
 from dembound.casefile.disks.monitor_rows import MonitorTable, without_rows
-from dembound.casefile.disks.static import Static, static_problems
+from dembound.casefile.disks.static import Static, changes, static_problems
 from dembound.casefile.disks.surface import surface_problems
 from dembound.casefile.disks.targets import law_problems, with_history
 from dembound.casefile.disks.unlike import unlike_problems
@@ -128,11 +128,8 @@ def _of_ground(tables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 def _too_late(tables: Mapping[str, Any], duration: float) -> Iterator[str]:
     """Times after the end of a run of a duration (s)."""
-    times = [(f"{place}.time", each.time) for key in ("group", "hole") for place, each in numbered(key, tables[key])]
-    for side, table in (tables["static"].boundary if tables["static"] else {}).items():
-        times.append((f"static.boundary.{side}.until", getattr(table, "until", None)))
-    for place, time in times:
-        if time is not None and time > duration:
+    for place, time in changes(tables["group"], tables["hole"], tables["static"]):
+        if time > duration:
             yield f"{place}: is {time:g} s, after the end of the run at {duration:g} s"
 
 

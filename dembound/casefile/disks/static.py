@@ -4,6 +4,7 @@ Where bonds may break, zones beside sides whose bonds do not, and springs of sid
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 from dembound.boundaries import OPPOSITE, Boundary, normal_axis
 from dembound.boundaries.edge import SIDES
@@ -109,6 +110,17 @@ def static_problems(
         yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column, has_walls=has_walls)
 
 
+def changes(groups: Sequence[Any], holes: Sequence[Any], static: Static | None) -> Iterator[tuple[str, float]]:
+    """Places of the keys by which the ground changes in the run, and these times (s); an invalid table is None."""
+    for key, tables in (("group", groups), ("hole", holes)):
+        for place, table in numbered(key, tables):
+            if table.time is not None:
+                yield f"{place}.time", table.time
+    for side, held in (static.boundary if static else {}).items():
+        if (until := getattr(held, "until", None)) is not None:
+            yield f"static.boundary.{side}.until", until
+
+
 def _without_weight(loads: Sequence[Load | None]) -> Iterator[str]:
     """Weight that static.k0 would be about, and is missing."""
     if None not in loads and not any(gravity(loads)):
@@ -139,11 +151,15 @@ def _unheld_loads(
     has_column: bool,
     has_walls: bool,
 ) -> Iterator[str]:
-    """Steady loads against which the body, or the free-field column, is not held; a body may rest on walls."""
+    """Steady loads against which the body, or the free-field column, is not held.
+
+    A body may rest on walls, but under k0, which gives the disks of free sides the forces of ground beyond.
+    """
+    below = ", under k0 also above walls" if has_walls and static.k0 is not None else ""
     beside = any(table.needs_column or (table.is_outside and has_column) for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
         on_column = beside and load.is_everywhere
-        if load.wave is not None or (has_walls and not on_column):
+        if load.wave is not None or (has_walls and static.k0 is None and not on_column):
             continue
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
@@ -151,7 +167,7 @@ def _unheld_loads(
             if load.moves_along(axis) and not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):
                 yield (
                     f"static.boundary: nothing holds the {what} along {'xy'[axis]} against {place}; "
-                    f"give {where} {kinds}"
+                    f"give {where} {kinds}{below}"
                 )
 
 

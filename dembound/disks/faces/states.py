@@ -9,6 +9,7 @@ from dembound.disks.faces.tie import ROOM, JointTie, empty_pairs
 from dembound.kernels.joint_notes import PAIRS
 from dembound.motion.part import Cracks, joined
 from dembound.motion.state import Arrays, arrays_of_owner
+from dembound.words import with_unit
 
 
 def states_of(ties: Sequence[JointTie]) -> dict[str, np.ndarray]:
@@ -37,6 +38,17 @@ def states_among(
             own[f"pair_{name}"] = empty
         found |= {f"joint_{faces.joint.name}/{name}": values for name, values in own.items()}
     return found
+
+
+def most_slipped(ties: Sequence[JointTie]) -> str:
+    """The joint with the largest slip of pairs that slide, as words after others; empty if none slides."""
+    most, name = 0.0, ""
+    for tie in ties:
+        pairs = tie.acting
+        slip = np.where(pairs.slides, np.abs(tie.slip(pairs)), 0.0)
+        if slip.max(initial=0.0) > most:
+            most, name = float(slip.max()), tie.faces.joints[tie.faces.part[pairs.first[np.argmax(slip)]]].name
+    return f"; joint {name} slides, so far by up to {with_unit(most, 'm')}" if name else ""
 
 
 def cracks_of(ties: Sequence[JointTie]) -> Cracks:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.disks.columns import COLUMNS
-from dembound.disks.faces.states import cracks_of, states_among, states_of
+from dembound.disks.faces.states import cracks_of, most_slipped, states_among, states_of
 from dembound.disks.rest.loading import LOOK, Loading
 from dembound.disks.rest.settled import Settled, Uniformity, among, block_stress
 from dembound.disks.rest.static_scene import StaticScene
@@ -102,7 +102,8 @@ class UntilAtRest(Tracker):
     def _fail(self, run: Run) -> None:
         """Raise StalledError, with the state of the stage and advice."""
         lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
-        steps, broken = run.state.step, f"broken bonds: {len(cracks):,}\n{_lacking(run, lacking)}"
+        steps = run.state.step
+        broken = f"broken bonds: {len(cracks):,}{most_slipped(self._system.joints)}\n{_lacking(run, lacking)}"
         came, advice = "came to", "allow more with static.max_steps"
         within = f"in {steps:,} steps"
         if steps < self._body.static.max_steps:

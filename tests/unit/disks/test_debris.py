@@ -122,6 +122,11 @@ def test_the_rule_waits_for_waves_and_walls_and_for_a_free_fall() -> None:
     sources = [Source(EVERYWHERE, 0.1, 0.4, 100.0), Source(EVERYWHERE, 0.2, np.inf, 100.0)]
     assert rest_rule(scene, sources) == RestRule(pytest.approx(np.sqrt(2.0)), 0.7)
     assert rest_rule(build(small(STOOD)), sources).earliest == 0.4
+    held = {"static": {"boundary": {"bottom": {"type": "fixed", "until": 0.5}}}}
+    group = {"name": "weak", "region": [0.0, 0.0, 9.0, 9.0], "pb_ten": 0.5, "time": 0.6}
+    hole = {"name": "cut", "type": "circle", "centre": [7.5, 5.0], "radius": 2.0, "stage": "run", "time": 0.8}
+    for change, time in ((held, 0.5), (held | {"group": [group]}, 0.6), (held | {"hole": [hole]}, 0.8)):
+        assert rest_rule(build(small(STOOD | change)), sources).earliest == time
 
 
 def test_what_cannot_come_to_rest_is_refused() -> None:

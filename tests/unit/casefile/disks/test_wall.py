@@ -90,3 +90,5 @@ def test_a_body_may_rest_on_walls_alone() -> None:
     weight = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}], "static": {}}
     assert small(LOOSE | weight).static is not None
     assert "nothing holds the body along y" in problems_in(lambda: small(LOOSE | weight | {"wall": []}))[0]
+    (found,) = problems_in(lambda: small(LOOSE | weight | {"static": {"k0": 0.5}}))
+    assert found.endswith('give a side "fixed" or "roller", under k0 also above walls')

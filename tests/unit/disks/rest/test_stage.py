@@ -136,6 +136,14 @@ def test_a_stalled_stage_names_who_lacks_most_and_how_many_lack_half(bar) -> Non
     ]
 
 
+def test_a_stage_in_which_a_joint_slides_names_it(bar) -> None:
+    joint = {"name": "bedding", "points": [[-1.0, 1.0], [5.0, 1.0]], "kn": 1e8, "ks": 1e8, "fric": 0.1}
+    loads = [{"name": "weight", "acceleration": [0.5 * G, -G]}]
+    body = {"packing.size": [4.0, 2.0], "joint": [joint], "load": loads, "motion.held": ["rotation"]}
+    with pytest.raises(StalledError, match=r"broken bonds: 0; joint bedding slides, so far by up to [\d.]+ m\n"):
+        settle(scene(bar, static={"max_steps": LOADED, "boundary": {"bottom": FIXED}}, **body))
+
+
 def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pairs_that_act(bar) -> None:
     ratios: list[float] = []
     static = {"ratio": 1e-8, "max_steps": LOOK, "boundary": {"bottom": FIXED}}
