@@ -11,7 +11,7 @@ import pytest
 
 from dembound.casefile import Case
 from dembound.check import check
-from dembound.disks import scene as scenes
+from dembound.disks import columns
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
@@ -148,8 +148,8 @@ def test_weight_and_a_wave_at_an_angle_add(lab) -> None:
 @pytest.mark.parametrize("kind", ["s", "p"])
 def test_level_ground_moves_as_its_columns(lab, monkeypatch, kind: str, changes: dict) -> None:
     """To rounding, 1e-11 of a wave of 1 m/s, and the continuum, which has the motion relative to them, is at rest."""
-    columns = Standing(("left", "bottom")), Standing(("right",))
-    monkeypatch.setattr(scenes, "standing_of", lambda *_: columns)
+    standing = Standing(("left", "bottom")), Standing(("right",))
+    monkeypatch.setattr(columns, "standing_of", lambda *_: standing)
     scene = build(slope(lab, [(0.0, 12.0), (20.0, 12.0)], kind, **changes))
     assert len(scene.feet) == 2
     simulation = Simulation(scene, choose_step(scene)[0])

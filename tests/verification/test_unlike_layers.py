@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks import scene as scenes
+from dembound.disks import columns
 from dembound.disks.rest.stage import settle
 from dembound.disks.scene import build, column_alone
 from dembound.disks.stability import choose_step
@@ -94,7 +94,7 @@ def test_layers_given_by_side_are_common_ones_if_they_are_the_same(lab, monkeypa
     step = choose_step(build(common))[0]
     places = ((-5.5, 19.5), (0.5, 12.5), (5.5, 3.5))
     own = velocities(by_side, step, places)
-    monkeypatch.setattr(scenes, "standing_of", lambda *_: (Standing(("left", "bottom")), Standing(("right",))))
+    monkeypatch.setattr(columns, "standing_of", lambda *_: (Standing(("left", "bottom")), Standing(("right",))))
     np.testing.assert_allclose(own, velocities(common, step, places), rtol=0.0, atol=1e-11)
     assert np.abs(own).max() > 1.5
 
