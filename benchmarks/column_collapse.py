@@ -299,7 +299,7 @@ def rows(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
                 "disks": disks,
                 "x99": own.x99,
                 "run_out": own.x99 / ends - 1.0,
-                "published": 1.2 * aspect if aspect < 2.3 else 1.9 * aspect ** (2.0 / 3.0),
+                "published": float(published(aspect)),
                 **dict(zip(("dx95", "dx99", "dx", "dy"), differences, strict=True)),
                 "profile": 100.0 * float(np.abs(own.profile - other.profile).sum() / other.profile.sum()),
                 "rest": debris["kinetic"] / disks / debris["fall"],
@@ -307,23 +307,36 @@ def rows(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
             }
 
 
+def published(aspect: float | np.ndarray) -> np.ndarray:
+    """Run-out of columns of grains over their width, by height over width (Lube et al. 2005)."""
+    return np.where(np.asarray(aspect) <= 2.3, 1.2 * aspect, 1.9 * aspect ** (2.0 / 3.0))
+
+
 def draw(found: Sequence[dict[str, Any]], path: Path) -> None:
     """Profiles of both programs, and run-out beside the published scaling."""
     import matplotlib.pyplot as plt
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.2), layout="constrained", width_ratios=(3, 2))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), layout="constrained", width_ratios=(3, 2))
     at = COLUMN * (np.arange(COLUMNS) + 0.5)
-    for number, row in enumerate(found):
-        own, other = row["profiles"]
-        left.step(at, own, where="mid", color=f"C{number}", label=f"a = {row['aspect']:g}")
-        left.step(at, other, where="mid", color=f"C{number}", ls=":")
-    left.plot([], [], "k:", label="other program")
-    left.set(xlabel="x (m)", ylabel="height (m)", xlim=(0.0, 1.1 * max(row["x99"] for row in found)))
+    aspects = sorted({row["aspect"] for row in found}, reverse=True)
+    for number, aspect in enumerate(aspects):
+        rows, color = [row for row in found if row["aspect"] == aspect], f"C{number}"
+        own, other = np.moveaxis([row["profiles"] for row in rows], 1, 0)
+        left.fill_between(at, own.min(axis=0), own.max(axis=0), step="mid", color=color, alpha=0.2, lw=0.0)
+        left.step(at, own.mean(axis=0), where="mid", color=color, label=f"a = {aspect:g}")
+        left.step(at, other.mean(axis=0), where="mid", color=color, ls=":")
+        run_out = np.array([row["run_out"] for row in rows])
+        spread = [[run_out.mean() - run_out.min()], [run_out.max() - run_out.mean()]]
+        right.errorbar(aspect, run_out.mean(), spread, fmt="o", color=color, capsize=3.0)
+    left.plot([], [], "k:", label="program in numpy alone")
+    left.set(xlabel="x (m)", ylabel="height (m)", xlim=(0.0, 1.1 * max(row["x99"] for row in found)), ylim=(0.0, None))
+    left.set_title("Deposits: mean and range of seeds", fontsize="medium")
     left.legend()
-    aspects = np.geomspace(0.4, 6.0, 50)
-    right.plot(aspects, np.where(aspects < 2.3, 1.2 * aspects, 1.9 * aspects ** (2.0 / 3.0)), "k", label="Lube et al.")
-    right.plot([row["aspect"] for row in found], [row["run_out"] for row in found], "o", label="x99")
-    right.set(xlabel="a, height over width", ylabel="(x99 − r₀)/r₀")
+    for label, low, high in (("Lube et al. (2005)", 0.0, 2.3), (None, 2.3001, 1.1 * max(2.3, *aspects))):
+        heights = np.linspace(low, high, 50)
+        right.plot(heights, published(heights), "k", label=label)
+    right.set(xlabel="a, height over width (–)", ylabel="run-out, (x99 − r₀)/r₀ (–)")
+    right.set_title("Run-out: mean and range of seeds", fontsize="medium")
     right.legend()
     figure.savefig(path, dpi=110)
 

@@ -15,7 +15,7 @@ from dembound.waves.file_wave import columns_in, header_of, read_text
 LEVEL = 4.0
 """Least length, in diameters, over which the surface is level at a side of the disks."""
 
-OTHER_UNIT = re.compile(r"\b(mm|cm|km|ft|feet|in|inch|yd)\b", re.IGNORECASE)
+OTHER_UNIT = re.compile(r"\b(mm|cm|km|ft|feet|in(?!\s+\w)|inch|yd)\b", re.IGNORECASE)
 """Units of length in a header other than m."""
 
 ABOVE = "surface"

@@ -43,7 +43,7 @@ def test_what_is_above_the_surface_is_a_hole_that_reaches_beyond_the_disks() -> 
 
 
 def test_a_surface_may_stand_in_a_file(tmp_path: Path) -> None:
-    for name, text in (("s.csv", "x (m),y (m)\n0,6\n4,6\n5,2\n10,2\n"), ("s.txt", "# x y\n0 6\n4 6\n5 2\n10 2\n")):
+    for name, text in (("s.csv", "x (m),y (m)\n0,6\n4,6\n5,2\n10,2\n"), ("s.txt", "# x y in m\n0 6\n4 6\n5 2\n10 2\n")):
         (tmp_path / name).write_text(text)
         case = from_file(tmp_path, name)
         assert case.ground.points == tuple(map(tuple, SLOPE))
@@ -76,6 +76,7 @@ def test_mistakes_have_a_line_each(tmp_path: Path) -> None:
         ("0,6\n10,six\n", "is not two columns of numbers"),
         ("0,6,1\n10,2,1\n", "has 3 columns, must have two, x and y in m"),
         ("x (ft),y (ft)\n0,6\n10,2\n", 'names "ft", must be in m'),
+        ("x in,y in\n0,6\n10,2\n", 'names "in", must be in m'),
     ):
         (tmp_path / "s.csv").write_text(text)
         (found,) = problems_in(lambda: from_file(tmp_path))
