@@ -153,7 +153,7 @@ class PlainPairs:
     def began(self, c):
         """Stretch, shear and rotation (3,) that a pair has from the start."""
         began = self.arrays.began
-        return np.zeros(3) if isinstance(began, float) else began[self.arrays.contact_type[c]]
+        return np.zeros(3) if len(began) == 0 else began[self.arrays.contact_type[c]]
 
     def strain(self, c, u_i, u_j, v_i, v_j, step):
         """Normal, arms, stretch, shear and its velocity along the normal of a pair."""
@@ -237,7 +237,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
     constants = np.ascontiguousarray(np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds]))
-    began = np.ascontiguousarray(columns["began"].T) if "began" in columns else np.float64(0.0)
+    began = np.ascontiguousarray(columns["began"].T) if "began" in columns else np.zeros((0, 3))
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,

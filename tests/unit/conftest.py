@@ -289,7 +289,7 @@ def command() -> Callable[[], None]:
 def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     """Runs a command in an empty folder as the shell would, with small pictures."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
+    monkeypatch.setattr(sys.modules["dembound.cli.entry"], "app", command)
     drawn_quickly(monkeypatch)
     monkeypatch.setattr(compiling, "report_compiling", lambda: None)  # else what is printed depends on earlier tests
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.kernels.compiler.lanes import LANES
-from dembound.kernels.compiler.start_strain import began_of
+from dembound.kernels.compiler.start_strain import NONE, began_of
 from dembound.kernels.tables import PairRows
 from dembound.pairwise import P, of_law
 
@@ -140,7 +140,7 @@ class PairPlan:
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
             constants=np.zeros((0, 0)),
             way=np.zeros((0, 2)),
-            began=0.0,
+            began=NONE,
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

@@ -57,7 +57,7 @@ class Contacts(NamedTuple):
     """Contacts with a history, each listed once; see kernels/contacts.py for forces, pairwise.py for constants.
 
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, c).
-    began : (p, 3) stretch and shear (m) and rotation that pairs have from the start; 0.0 without a stress at rest.
+    began : (p, 3) stretch and shear (m) and rotation that pairs have from the start; (0, 3) without a stress at rest.
     state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
     kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, whether
     the contact pushed in the last step, see kernels/contacts.py; cracked : (b,) int64, step in which the bond broke,
@@ -80,7 +80,7 @@ class Contacts(NamedTuple):
     second: np.ndarray
     contact_type: np.ndarray
     constants: np.ndarray
-    began: float | np.ndarray
+    began: np.ndarray
     state: np.ndarray
     shear: np.ndarray
     slip: np.ndarray
@@ -109,7 +109,7 @@ class PairRows(NamedTuple):
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
     (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1. contact_type : (q,)
-    uint32 that of the pairs, and began (q, 3) or 0.0, see `Contacts`.
+    uint32 that of the pairs, and began (q, 3) or (0, 3), see `Contacts`.
     """
 
     group_row: np.ndarray
@@ -119,7 +119,7 @@ class PairRows(NamedTuple):
     step: np.ndarray
     constants: np.ndarray
     way: np.ndarray
-    began: float | np.ndarray
+    began: np.ndarray
     exists: np.ndarray
     start: np.ndarray
     offset: np.ndarray

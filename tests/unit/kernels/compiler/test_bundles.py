@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is com
 CONTACTS = Contacts(
     begin=-3, damps_bonds=True, first=np.zeros(2, np.uint32), second=np.ones(2, np.uint32),
     contact_type=np.zeros(2, np.uint32),
-    constants=np.arange(24.0).reshape(2, 12), began=0.0, state=np.array([1, 200], np.uint8),
+    constants=np.arange(24.0).reshape(2, 12), began=np.zeros((0, 3)), state=np.array([1, 200], np.uint8),
     shear=np.array([0.1, -0.2]), slip=np.zeros(2), closed=np.zeros(2, np.uint8), cracked=np.array([-1, 7]),
     place=np.zeros((2, 2)), kept=np.zeros(2, np.uint8), force=np.arange(8.0).reshape(4, 2),
     viscosity=np.zeros((2, 0)), drag=np.zeros((2, 0)), lag=np.zeros((0, 0)), rolled=np.zeros(0), bound=np.arange(3),

@@ -78,7 +78,7 @@ def eight(slots, values, table, numbers, limits, other, numbers_other):  # type:
     at = load(slots, U(1))
     rows = load(slots, at)
     first = load(values, at) + table[rows, U(2)] - limit_of(limits, rows) + factors_of(limits, at)
-    first += splat(factors_of(1.0, at)) + began_with(table, at, U(1)) + began_with(0.0, at, U(1))
+    first += splat(factors_of(1.0, at)) + began_with(table, at, U(1)) + began_with(table[:0], at, U(1))
     chosen = np.uint8(byte_of(where_equal(numbers, at, np.uint8(2))) | np.uint8(3))
     store_some(other, at, first, chosen)
     store_some(other, U(LANES + 5), first, chosen)
