@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.disks.contacts.row_plan import RowPlan
 from dembound.kernels.compiler.lanes import LANES
-from dembound.kernels.compiler.start_strain import NONE, began_of
+from dembound.kernels.compiler.start_strain import began_of_rows
 from dembound.kernels.tables import PairRows
 from dembound.pairwise import P, of_law
 
@@ -114,7 +114,7 @@ class PairPlan:
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
         lines = constants[self.key % self.types]
         way = lines[:, :2] / lines[:, P.rest, None]
-        return self._empty._replace(exists=exists, constants=of_law(lines), way=way, began=began_of(lines))
+        return self._empty._replace(exists=exists, constants=of_law(lines), way=way, began=began_of_rows(lines))
 
     @cached_property
     def _empty(self) -> PairRows:
@@ -140,7 +140,7 @@ class PairPlan:
             step=np.column_stack([owner - plan.group_row[group], self.shift]),
             constants=np.zeros((0, 0)),
             way=np.zeros((0, 2)),
-            began=NONE,
+            began=0.0,
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

@@ -1,6 +1,7 @@
-"""The strain that pairs have from the start, under a stress at rest; without one compiled code leaps over reading it.
+"""The strain that pairs have from the start, under a stress at rest.
 
-So kernels are compiled once for bodies with and without it.
+Without one, compiled code of listed pairs leaps over reading it, so that it is compiled once for bodies with and
+without. Code of pairs in rows, where each step counts, has nothing of it.
 """
 
 from typing import Any
@@ -25,23 +26,34 @@ def began_of(constants: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(began) if began.any() else NONE
 
 
+def began_of_rows(constants: np.ndarray) -> float | np.ndarray:
+    """`PairRows.began` of such types of contacts: 0.0 without a stress at rest."""
+    began = began_of(constants)
+    return began if len(began) > 0 else 0.0
+
+
 def began_with(began: Any, contact_type: Any, component: Any) -> Any:
-    """Stretch (0) and shear (1) in m or rotation (2) from the start of a type of contact, see `Contacts.began`."""
-    return began[contact_type, component] if len(began) > 0 else 0.0
+    """Stretch (0) and shear (1) in m or rotation (2) from the start of a type of contact, see `Contacts.began`.
+
+    Where this is a number, compiled code adds nothing.
+    """
+    return 0.0 if isinstance(began, float) or len(began) == 0 else began[contact_type, component]
 
 
 @infer_global(began_with)
 class _Typing(AbstractTemplate):
     def generic(self, args: Any, kws: Any) -> Any:
-        return signature(lanes if args[1] == indices else types.float64, *args)
+        of_eight = isinstance(args[0], types.Array) and args[1] == indices
+        return signature(lanes if of_eight else types.float64, *args)
 
 
 @lower_builtin(began_with, types.Any, types.Any, types.Any)
 def _began_with(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     began, contact_type, component = args
+    if not isinstance(sig.args[0], types.Array):
+        return context.get_constant(types.float64, 0.0)
     column = context.make_array(sig.args[0])(context, builder, began)
-    before, kind = builder.block, context.get_value_type(sig.return_type)
-    rows = builder.extract_value(column.shape, 0)
+    kind, before, rows = context.get_value_type(sig.return_type), builder.block, builder.extract_value(column.shape, 0)
     with builder.if_then(builder.icmp_unsigned("!=", rows, ir.Constant(rows.type, 0)), likely=False):
         if sig.args[1] == indices:
             there = gathered_rows(builder, column.data, contact_type, component, column.shape)
@@ -50,6 +62,6 @@ def _began_with(context: Any, builder: Any, sig: Any, args: Any) -> Any:
             there = builder.load(builder.gep(column.data, [place]))
         after = builder.block
     found = builder.phi(kind)
-    found.add_incoming(ir.Constant(kind, [0.0] * kind.count if isinstance(kind, ir.VectorType) else 0.0), before)
+    found.add_incoming(ir.Constant(kind, None), before)
     found.add_incoming(there, after)
     return found

@@ -109,7 +109,7 @@ class PairRows(NamedTuple):
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
     (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1. contact_type : (q,)
-    uint32 that of the pairs, and began (q, 3) or (0, 3), see `Contacts`.
+    uint32 that of the pairs, and began (q, 3) or 0.0, see `Contacts`.
     """
 
     group_row: np.ndarray
@@ -119,7 +119,7 @@ class PairRows(NamedTuple):
     step: np.ndarray
     constants: np.ndarray
     way: np.ndarray
-    began: np.ndarray
+    began: float | np.ndarray
     exists: np.ndarray
     start: np.ndarray
     offset: np.ndarray
