@@ -237,7 +237,8 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
     constants = np.ascontiguousarray(np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds]))
-    began = np.ascontiguousarray(columns["began"].T) if "began" in columns else np.full((1, 3), np.nan)[:0]  # not to be read
+    unread = np.full((1, 3), np.nan)[:0]
+    began = np.ascontiguousarray(columns["began"].T) if "began" in columns else unread
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,

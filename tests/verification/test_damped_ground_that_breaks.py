@@ -57,7 +57,7 @@ def settled(scene: DiskScene, step: float) -> Simulation:
     return Simulation(scene, step, list(scene.monitors.values()), system=beginning.system, datum=beginning.datum)
 
 
-@pytest.mark.parametrize("geometry", ["reference", "updated"])
+@pytest.mark.parametrize("geometry", [pytest.param("reference", marks=pytest.mark.slow), "updated"])
 def test_until_contacts_open_it_moves_as_elastic_ground_of_the_same_quality(geometry):
     """Both are the same filter of the same forces, apart from rounding; contacts stay closed under 1 kPa.
 
@@ -220,6 +220,7 @@ def test_strength_does_not_depend_on_the_rate(lab, motion):
     assert fast == pytest.approx(slow, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_what_is_cut_off_flies_by_the_energy_of_its_bonds_alone(lab):
     """A chain is pulled for 2 s, until the bond of its small first disk breaks, beside a disk that is free.
 

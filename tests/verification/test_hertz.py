@@ -88,7 +88,9 @@ def speed_after(across: float) -> float:
     return float(across - now[5] / MASS)
 
 
-@pytest.mark.parametrize("across", [0.2, 1.0, 2.0])
+@pytest.mark.parametrize(
+    "across", [pytest.param(0.2, marks=pytest.mark.slow), 1.0, pytest.param(2.0, marks=pytest.mark.slow)]
+)
 def test_oblique_impacts_are_those_of_the_law_integrated_apart(lab, across):
     simulation, ledger, _ = rebound(lab, across * SLOW, steps=4000)
 

@@ -95,7 +95,9 @@ def outcome(run: Simulation, steps: int, every: int = 0) -> tuple[str, list[list
     return hashlib.sha256(motion.tobytes() + energy.tobytes()).hexdigest(), cracks.pair.tolist(), listed
 
 
-@pytest.mark.parametrize(("make", "steps"), [(tumbling, 1500), (blown, 2500), (torn, 500)])
+@pytest.mark.parametrize(
+    ("make", "steps"), [pytest.param(tumbling, 1500, marks=pytest.mark.slow), (blown, 2500), (torn, 500)]
+)
 def test_listings_change_no_bit(lab, make, steps, monkeypatch) -> None:
     *usual, count = outcome(make(lab), steps)
     for every, changes in ((1, {}), (7, {}), (0, {"AHEAD": 0.0}), (0, {"AHEAD": 80.0}), (0, {"MOVING": 0.1})):

@@ -101,6 +101,7 @@ def test_a_bench_of_layers_moves_as_one_of_disks_alone(lab, joint: float) -> Non
     assert found[1].max() < 3e-3
 
 
+@pytest.mark.slow
 def test_a_ridge_between_two_floors_moves_as_one_of_disks_alone(lab) -> None:
     """Under a traction on the continuum's own surface beyond the left floor, which the other scene has on disks."""
     holes = [

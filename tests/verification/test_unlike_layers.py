@@ -68,7 +68,9 @@ def error(own: np.ndarray, expected: np.ndarray) -> float:
 SLOPE = ((-10.0, 20.0), (-5.0, 20.0), (3.0, 15.0), (10.0, 15.0))
 
 
-@pytest.mark.parametrize(("kind", "sloped"), [("s", False), ("p", False), ("s", True)])
+@pytest.mark.parametrize(
+    ("kind", "sloped"), [pytest.param("s", False, marks=pytest.mark.slow), ("p", False), ("s", True)]
+)
 def test_near_sides_leave_the_motion_as_it_is(lab, kind: str, sloped: bool) -> None:
     """Half a height away: 0.14 % (SV), 0.16 % (P), 0.14 % where the surface differs, too; 2 to 4 % with wrong layers.
 

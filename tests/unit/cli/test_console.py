@@ -85,6 +85,7 @@ largest(np.ones(2))
 """
 
 
+@pytest.mark.slow
 def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
     def printed() -> str:
         kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}

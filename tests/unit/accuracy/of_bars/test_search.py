@@ -63,6 +63,7 @@ def test_the_cheapest_of_all_choices_is_taken() -> None:
 SPREAD = {"method": {"type": "peridynamics", "horizon": 3, "corrected_ends": True}, "load.hit.nodes": 3}
 
 
+@pytest.mark.slow
 def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences() -> None:
     """Loads of finite differences act on the last node, where the surface is, and monitors remain at their places."""
     case = with_changes(scene("finite differences, ν = 0.9"), {"run": {"duration": 1.1e-3}, **SPREAD})
@@ -77,6 +78,7 @@ def test_a_bar_of_peridynamics_that_cannot_break_is_taken_by_finite_differences(
     assert other.method.type == "peridynamics"
 
 
+@pytest.mark.slow
 def test_two_rocks_get_nodes_of_equal_travel_times() -> None:
     """Finite differences near Courant number 1 are then exact in both rocks, except for whole numbers of nodes.
 

@@ -56,6 +56,7 @@ def test_the_elastic_law_replaces_another_that_is_never_needed() -> None:
     assert twin_of(confined({"wave.push.amplitude": 1.1 * twin.factor})) is None  # larger waves leave it
 
 
+@pytest.mark.slow
 def test_with_larger_disks_more_is_needed() -> None:
     few = 2000.0  # particle-steps, less than the largest disks take that resolve the wave
     larger = twin_of(confined({"wave.push.amplitude": 0.1}), most=few)

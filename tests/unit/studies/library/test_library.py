@@ -71,6 +71,7 @@ def test_histories_are_those_of_a_direct_run(heavy, tmp_path):
         assert whole == pytest.approx(round(whole))
 
 
+@pytest.mark.slow
 def test_layers_respond_as_in_a_direct_run(tmp_path):
     library = Library(build_library(small(SOIL, "soil", {"run.duration": 0.15}), 0.005, tmp_path))
     np.savetxt(tmp_path / "r.txt", [(0.0, 0.0), (0.005, 0.2), (0.01, -0.1), (0.015, 0.0)])

@@ -132,6 +132,7 @@ def test_a_body_that_nothing_holds_sideways_has_a_factor_alone() -> None:
     assert "static.boundary: nothing holds the body along x against load[2, push]" in found.words[-1]
 
 
+@pytest.mark.slow
 def test_one_disk_that_falls_out_of_the_scene_is_no_failure() -> None:
     """The last one of the upper row, below which there is nothing: its contact with the row is without force."""
     rows = {
