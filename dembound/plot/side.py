@@ -59,7 +59,8 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     figure = new_figure(9.0, 6.5)
     upper, lower = figure.subplots(2, 1, sharex=True)
     for index, (name, each) in enumerate(zip(record_names(runs), sides, strict=True)):
-        _draw((upper, lower), each.of_column(False), column, name, point_style(index))
+        if not each.column.all():
+            _draw((upper, lower), each.of_column(False), column, name, point_style(index))
         if each.column.any():
             hollow = point_style(index) | {"linestyle": "none", "markerfacecolor": "white"}
             _draw((upper, lower), each.of_column(True), column, f"{name}, free-field column", hollow)
