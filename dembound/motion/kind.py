@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from dembound.motion.simulation import Simulation
+
+CracksBy = Literal["kind", "time"]
+"""What gives the colours of broken bonds in pictures of disks."""
 
 
 class MovingPicture(Protocol):
@@ -308,10 +311,13 @@ class Kind(ABC, Generic[C, S]):
         """The pictures of a run by name, besides the picture of its monitors' velocities."""
 
     @abstractmethod
-    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+    def field_picture(
+        self, record: Path, field: str, snapshot: int | None, exaggerate: float | None, cracks: CracksBy = "kind"
+    ) -> Figure:
         """A field of a record as a picture, of one snapshot or of suitable ones.
 
-        exaggerate : as of `moving_picture`. Raises CaseError if the field is missing.
+        exaggerate : as of `moving_picture`. cracks : what colours broken bonds of disks. Raises CaseError if the field
+        is missing.
         """
 
     @abstractmethod

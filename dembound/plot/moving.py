@@ -16,10 +16,18 @@ from dembound.plot.field import OF_THE_RUN, Field, FieldName, read_disks
 from dembound.plot.field_reader import find_field
 from dembound.plot.histories import plot_histories
 from dembound.plot.places import displacement_of, framed
-from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part, out_of_frame
+from dembound.plot.scene import (
+    DRAWING,
+    LONG,
+    add_colour_bars,
+    close_up,
+    draw_panel,
+    mark_monitors,
+    mark_part,
+    out_of_frame,
+)
 from dembound.plot.style import (
     COLOURS,
-    Powers,
     lay_out,
     new_figure,
     outside_legend,
@@ -209,8 +217,7 @@ class MovingScene:
         self._part = close_up(self._disks, largest.values[0]) if is_long else None
         self._make_panels()
         self._fill(last, len(self.times) - 1)
-        looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "extend": last.extend}
-        self.figure.colorbar(self._colours, ax=self._panels, label=last.label, **looks)
+        add_colour_bars(self.figure, self._panels, self._colours, last)
         moved = f", displacements × {found.factor:g}" if found.factor not in (0.0, 1.0) else ""
         self.words = f"{self._disks.case}: {last.name} of {self._disks.in_words}{moved}"
         self.figure.suptitle("\n".join(filter(None, [self.words, self._disks.laws])), fontsize=11)

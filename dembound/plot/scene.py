@@ -1,13 +1,16 @@
 """The whole scene at one time, or a long one at several times, with disks coloured by a field."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
@@ -15,6 +18,7 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.messages import counted
+from dembound.motion.kind import CracksBy
 from dembound.plot.disks import Window, draw_continuum, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks
 from dembound.plot.field_reader import read_field
@@ -30,6 +34,7 @@ from dembound.plot.lines import (
     mark_walls,
 )
 from dembound.plot.outlines import draw_outlines
+from dembound.plot.pieces import name_hues
 from dembound.plot.places import framed
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
@@ -61,6 +66,15 @@ TICK_APART, SMALL = 0.6, 7
 CRACKS = {"bond broken in tension": "black", "bond broken in shear": "#C000C0"}
 """Names of the two kinds of cracks in the legend; colours of their lines."""
 
+TIME_MAP = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.85, 64)))
+"""Colours of cracks by time, without the lightest, which would not be seen on white."""
+
+DASHED: tuple[Any, ...] = ("-", (0, (1.5, 0.7)))
+"""Lines of cracks in tension and in shear where colours are times."""
+
+ROOM_OF_BAR = 1.4
+"""Inches for a second colour bar."""
+
 CRACK_WIDTH, THINNEST_CRACK = 0.12, 0.6
 """Width of the line of a crack in mean diameters, and its least width in points."""
 
@@ -78,10 +92,11 @@ def plot_scene(
     field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
     exaggerate: float | None = None,
+    cracks: CracksBy = "kind",
 ) -> Figure:
     """The scene at a snapshot, with the monitors and one colour scale for the run.
 
-    The scale has 99.5 % of the disks, if the others are beyond twice of it. Bonds broken up to this time are lines
+    The scale has 99.5 % of the disks, if the others are beyond 1.25 times of it. Bonds broken up to this time are lines
     across them, as wide as the smaller disk; the legend has their number. A very long scene has another panel with an
     enlarged part of it. A continuum round the disks has the same colours, its absorbing layers are hatched. Thin lines
     separate the layers of the ground.
@@ -102,12 +117,15 @@ def plot_scene(
         factor of the displacements with which disks, nodes, walls and cracks are drawn; 0 shows them at their first
         places. By default 1 if a disk moves by more than a tenth of the mean diameter in the run, else 0. Disks far
         from all others are not in the frame, which has their number.
+    cracks
+        what gives the colours of broken bonds: their kind, or the time at which they broke.
 
     Raises CaseError when the file cannot be read, has no such snapshot or does not contain the field.
     """
     with open_record(run) as file:
         disks = read_disks(file)
         shown = read_field(file, field, component, snapshot, strips_on_page(disks.window), exaggerate)
+    shown = replace(shown, by_time=cracks == "time")
     window = disks.window
     if shown.moved is not None:
         window = framed(window, disks.positions, disks.radii, shown.moved)
@@ -116,11 +134,27 @@ def plot_scene(
         figure, panels, colours = _draw_long(disks, shown, window)
     else:
         figure, panels, colours = _draw_whole(disks, shown, window)
-    ticks = MaxNLocator(integer=True) if field == "layer" else None
-    looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "ticks": ticks, "extend": shown.extend}
-    figure.colorbar(colours, ax=panels, label=shown.label, **looks)
+    add_colour_bars(figure, panels, colours, shown)
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
     return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
+
+
+def add_colour_bars(figure: Figure, panels: Sequence[Axes], colours: ScalarMappable, shown: Field) -> None:
+    """The colour bars beside panels: of a field's values, if they are no numbers of colours, and of times of cracks."""
+    looks: dict[str, Any] = {"ax": panels, "shrink": 0.9, "pad": 0.02, "format": Powers()}
+    if shown.palette is None:
+        ticks = MaxNLocator(integer=True) if shown.name == "layer" else None
+        figure.colorbar(colours, label=shown.label, ticks=ticks, extend=shown.extend, **looks)
+    if shown.by_time and np.isfinite(shown.cracks[-1]["ends"]).any():
+        figure.set_figwidth(figure.get_figwidth() + ROOM_OF_BAR)
+        times = ScalarMappable(Normalize(*ends_of(shown)), TIME_MAP)
+        figure.colorbar(times, label="time at which the bond broke (s)", **looks)
+
+
+def ends_of(shown: Field) -> tuple[float, float]:
+    """Times (s) of the first and the last crack drawn."""
+    times = shown.cracks[-1]["time"]
+    return float(times.min()), float(times.max())
 
 
 def strips_on_page(scene: Window) -> int:
@@ -216,7 +250,7 @@ def draw_panel(
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
     there = slice(None) if shown.gone is None else ~shown.gone[index]
     drawn = positions[there], disks.radii[there], shown.values[index][there]
-    colours = draw_field(panel, window, *drawn, shown.limits, scale, disks.holes)
+    colours = draw_field(panel, window, *drawn, shown.limits, scale, disks.holes, shown.palette)
     covered = isinstance(colours, AxesImage) and shown.moved is None  # cells of the image reach into holes
     draw_outlines(panel, disks.holes, disks.own_window, 2.0 * float(disks.radii.mean()), filled=covered)
     if disks.continuum is not None:
@@ -226,6 +260,8 @@ def draw_panel(
         if beyond is not None and disks.foot is not None:
             left, right = disks.continuum.window.extent[:2]
             panel.hlines(disks.foot, left, right, label="below: motion without the free field", **FOOT)
+    if shown.palette is not None:
+        name_hues(panel, drawn[2])
     mark_seams(panel, disks, window)
     mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
@@ -256,6 +292,16 @@ def _mark_cracks(panel: Axes, shown: Field, index: int, numbered: bool, diameter
         if len(lines) > 0:
             number = f" ({len(last):,}{until})" if numbered else ""
             looks: dict[str, Any] = {"colors": colour, "linewidths": width, "zorder": ABOVE_DISKS}
+            if shown.by_time:
+                broken = shown.cracks[index]
+                times = broken["time"][broken["shear"] == shear]
+                looks |= {
+                    "colors": TIME_MAP(0.5),
+                    "array": times,
+                    "cmap": TIME_MAP,
+                    "clim": ends_of(shown),
+                    "linestyles": DASHED[shear],
+                }
             panel.add_collection(LineCollection(list(lines), label=f"{label}{number}", **looks), autolim=False)
 
 

@@ -33,7 +33,7 @@ from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.kinds.bar.summary import bar_facts, bar_outcome, part_of, spalls_of, summarise_bar
 from dembound.kinds.bar.warnings import bar_warnings
 from dembound.kinds.bar.warnings_after import warnings_after_bar
-from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Stages
+from dembound.motion.kind import Beginning, CracksBy, Finding, Kind, MovingPicture, OnLook, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial
@@ -196,7 +196,9 @@ class Bars(Kind[BarCase, BarScene]):
         if has_monitors(record):
             yield "histories_stress", plot_histories([record], quantity="stress")
 
-    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+    def field_picture(
+        self, record: Path, field: str, snapshot: int | None, exaggerate: float | None, cracks: CracksBy = "kind"
+    ) -> Figure:
         """One field over place and time."""
         from dembound.plot.bar import plot_bar_field
 
