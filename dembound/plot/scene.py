@@ -293,16 +293,14 @@ def _mark_cracks(panel: Axes, shown: Field, index: int, numbered: bool, diameter
             number = f" ({len(last):,}{until})" if numbered else ""
             looks: dict[str, Any] = {"colors": colour, "linewidths": width, "zorder": ABOVE_DISKS}
             if shown.by_time:
+                del looks["colors"]  # which would be taken for those of the times
                 broken = shown.cracks[index]
-                times = broken["time"][broken["shear"] == shear]
-                looks |= {
-                    "colors": TIME_MAP(0.5),
-                    "array": times,
-                    "cmap": TIME_MAP,
-                    "clim": ends_of(shown),
-                    "linestyles": DASHED[shear],
-                }
-            panel.add_collection(LineCollection(list(lines), label=f"{label}{number}", **looks), autolim=False)
+                looks |= {"cmap": TIME_MAP, "clim": ends_of(shown), "linestyles": DASHED[shear]}
+                looks["array"] = broken["time"][broken["shear"] == shear]
+            drawn = LineCollection(list(lines), label=f"{label}{number}", **looks)
+            if shown.by_time:
+                drawn.update_scalarmappable()  # the legend has one of the colours
+            panel.add_collection(drawn, autolim=False)
 
 
 def out_of_frame(disks: Disks, shown: Field, index: int, window: Window) -> str:
