@@ -78,7 +78,7 @@ def plot_sieve(runs: Sequence[Path], snapshot: int | None = None) -> Figure:
     """
     figure = new_figure(8.0, 5.2)
     panel = figure.subplots()
-    times, lacking = set[str](), []
+    lacking = []
     for index, (label, run) in enumerate(zip(record_names(runs), runs, strict=True)):
         with open_record(run) as file:
             group = snapshots_of(file, required=True)[-1] if snapshot is None else snapshot_of(file, snapshot)
@@ -93,10 +93,9 @@ def plot_sieve(runs: Sequence[Path], snapshot: int | None = None) -> Figure:
         ends = np.append(diameters, diameters[-1]), np.append(finer, finer[-1])
         ends[0][-1] *= 1.2  # the curve goes on at 100 %
         look: dict[str, Any] = {"linewidth": 1.6, **line_style(index)}
-        panel.plot(*ends, drawstyle="steps-post", label=label, gid=label, **look)
+        panel.plot(*ends, drawstyle="steps-post", label=f"{label}, t = {time:.3g} s", gid=label, **look)
         panel.vlines(diameters[0], 0.0, finer[0], **look)
         panel.axvline(disk, color=look["color"], linestyle="--", linewidth=0.8)
-        times.add(f"{time:.3g} s")
     if len(lacking) == len(runs):
         raise CaseError(lacking)
     panel.set(xscale="log", ylim=(0.0, 1.02), xlabel="equivalent diameter √(4A/π) (m)")
@@ -105,5 +104,4 @@ def plot_sieve(runs: Sequence[Path], snapshot: int | None = None) -> Figure:
     panel.xaxis.set_major_formatter("{x:g}")
     panel.xaxis.set_minor_formatter(NullFormatter())
     panel.plot([], [], label="mean diameter of the disks", color="black", linewidth=0.8, linestyle="--")
-    title = f"Sieve curves of the fragments at t = {', '.join(sorted(times))}"
-    return finished(figure, title, [panel], 3)
+    return finished(figure, "Sieve curves of the fragments", [panel], 3)
