@@ -107,16 +107,16 @@ def plot_scene(
         the ``run.h5`` of a run.
     snapshot
         number of the snapshot; negative ones count from the last. By default the one in which the field is largest, of
-        velocities a monitor's; of a long horizontal scene, as many as fit on the page, evenly chosen.
+        velocities a monitor's, of fragments the last; of a long horizontal scene, as many as fit, evenly chosen.
     field
         velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
-        the whole run in m/s; layer, its number from the surface. The record must contain it.
+        the whole run in m/s; layer, its number from the surface; fragments, a hue for each. The record must contain it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
     exaggerate
         factor of the displacements with which disks, nodes, walls and cracks are drawn; 0 shows them at their first
         places. By default 1 if a disk moves by more than a tenth of the mean diameter in the run, else 0. Disks far
-        from all others are not in the frame, which has their number.
+        from the body, see `are_near`, are not in the frame, which has their number.
     cracks
         what gives the colours of broken bonds: their kind, or the time at which they broke.
 
