@@ -214,7 +214,7 @@ class MovingScene:
             largest = found.at([found.groups[int(np.argmax(found.largest))]])
             last = found.at([found.groups[-1]])
         is_long = max(self._window.size) > LONG * min(self._window.size)
-        self._part = close_up(self._disks, largest.values[0]) if is_long else None
+        self._part = close_up(self._disks, largest.values[0], largest.palette is not None) if is_long else None
         self._make_panels()
         self._fill(last, len(self.times) - 1)
         add_colour_bars(self.figure, self._panels, self._colours, last)

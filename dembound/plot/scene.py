@@ -183,8 +183,8 @@ def _draw_long(disks: Disks, shown: Field, window: Window) -> tuple[Figure, list
     """Draw a window of a long scene as strips, one per time, and below or beside them an enlarged part of one."""
     upright = bool(window.size[1] > window.size[0])
     count = len(shown.captions)
-    framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
-    part = close_up(disks, shown.values[framed])
+    framed = int(np.argmax(np.abs(shown.values).max(axis=1))) if shown.palette is None else count - 1
+    part = close_up(disks, shown.values[framed], shown.palette is not None)
     room = DRAWING[1] if upright else DRAWING[0]
     scales = [room / max(each.size) for each in (window, part)]
     strip, close = (scale * min(each.size) for scale, each in zip(scales, (window, part), strict=True))
@@ -224,8 +224,13 @@ def mark_part(panel: Axes, part: Window) -> None:
     panel.add_patch(Rectangle((left, bottom), right - left, top - bottom, **looks))
 
 
-def close_up(disks: Disks, values: np.ndarray) -> Window:
-    """The part of a long scene around half the largest of values (n,), where colours change most."""
+def close_up(disks: Disks, values: np.ndarray, are_pieces: bool) -> Window:
+    """The part of a long scene around half the largest of values (n,), where colours change most.
+
+    are_pieces : values are of `PALETTE`, and the part is that in the middle of all fragments.
+    """
+    if are_pieces and values.any():
+        return part_around(disks, np.median(disks.positions[values > 0.0], axis=0))
     sizes = np.abs(values)
     return part_around(disks, disks.positions[np.argmin(np.abs(sizes - 0.5 * sizes.max()))])
 
