@@ -6,11 +6,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
@@ -19,12 +16,12 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.messages import counted
 from dembound.motion.kind import CracksBy
+from dembound.plot.crack_lines import mark_cracks, times_of_cracks
 from dembound.plot.disks import Window, draw_continuum, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks
 from dembound.plot.field_reader import read_field
 from dembound.plot.lines import (
     ABOVE_CRACKS,
-    ABOVE_DISKS,
     LETTER_WIDTH,
     NAME_HEIGHT,
     mark_areas,
@@ -63,20 +60,11 @@ SHORTEST = {"x": 0.8, "y": 0.4}
 TICK_APART, SMALL = 0.6, 7
 """Distance (inches) between numbers of a panel with room for three; size (points) of numbers without this room."""
 
-CRACKS = {"bond broken in tension": "black", "bond broken in shear": "#C000C0"}
-"""Names of the two kinds of cracks in the legend; colours of their lines."""
-
-TIME_MAP = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.85, 64)))
-"""Colours of cracks by time, without the lightest, which would not be seen on white."""
-
-DASHED: tuple[Any, ...] = ("-", (0, (1.5, 0.7)))
-"""Lines of cracks in tension and in shear where colours are times."""
-
 ROOM_OF_BAR = 1.4
 """Inches for a second colour bar."""
 
-CRACK_WIDTH, THINNEST_CRACK = 0.12, 0.6
-"""Width of the line of a crack in mean diameters, and its least width in points."""
+LEGEND_WIDTH = 8.3
+"""Inches of a legend with two columns."""
 
 FOOT: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 1.4}
 """Line below which the continuum has no free field: above its elements, below its ties."""
@@ -139,22 +127,22 @@ def plot_scene(
     return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
 
 
+def with_margins(width: float, height: float, shown: Field) -> tuple[float, float]:
+    """Width and height (inches) of a figure for panels of a width: with a colour bar, or with a longer legend."""
+    if shown.palette is None:
+        return max(width, 3.0) + 1.8, height
+    return max(width + 0.9, LEGEND_WIDTH), height + 0.9
+
+
 def add_colour_bars(figure: Figure, panels: Sequence[Axes], colours: ScalarMappable, shown: Field) -> None:
     """The colour bars beside panels: of a field's values, if they are no numbers of colours, and of times of cracks."""
     looks: dict[str, Any] = {"ax": panels, "shrink": 0.9, "pad": 0.02, "format": Powers()}
     if shown.palette is None:
         ticks = MaxNLocator(integer=True) if shown.name == "layer" else None
         figure.colorbar(colours, label=shown.label, ticks=ticks, extend=shown.extend, **looks)
-    if shown.by_time and np.isfinite(shown.cracks[-1]["ends"]).any():
+    if (times := times_of_cracks(shown)) is not None:
         figure.set_figwidth(figure.get_figwidth() + ROOM_OF_BAR)
-        times = ScalarMappable(Normalize(*ends_of(shown)), TIME_MAP)
         figure.colorbar(times, label="time at which the bond broke (s)", **looks)
-
-
-def ends_of(shown: Field) -> tuple[float, float]:
-    """Times (s) of the first and the last crack drawn."""
-    times = shown.cracks[-1]["time"]
-    return float(times.min()), float(times.max())
 
 
 def strips_on_page(scene: Window) -> int:
@@ -170,7 +158,7 @@ def _draw_whole(disks: Disks, shown: Field, window: Window) -> tuple[Figure, lis
     width, height = window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
     rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
-    figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
+    figure = new_figure(*with_margins(scale * width, scale * height + rows, shown))
     panel = figure.subplots()
     colours = draw_panel(panel, disks, shown, 0, window, scale * figure.dpi)
     out = out_of_frame(disks, shown, 0, window)
@@ -272,7 +260,7 @@ def draw_panel(
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
     mark_joints(panel, disks, shown.joints[index] if shown.joints else None)
     mark_areas(panel, disks)
-    _mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
+    mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi
         if inches > SHORTEST[name]:
@@ -283,29 +271,6 @@ def draw_panel(
         else:
             axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
-
-
-def _mark_cracks(panel: Axes, shown: Field, index: int, numbered: bool, diameter: float) -> None:
-    """A line at each bond broken up to one of the times; the legend may have their number at the last time.
-
-    diameter : mean, in points.
-    """
-    until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
-    width = max(THINNEST_CRACK, CRACK_WIDTH * diameter)
-    for shear, (label, colour) in enumerate(CRACKS.items()):
-        lines, last = (each["ends"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
-        if len(lines) > 0:
-            number = f" ({len(last):,}{until})" if numbered else ""
-            looks: dict[str, Any] = {"colors": colour, "linewidths": width, "zorder": ABOVE_DISKS}
-            if shown.by_time:
-                del looks["colors"]  # which would be taken for those of the times
-                broken = shown.cracks[index]
-                looks |= {"cmap": TIME_MAP, "clim": ends_of(shown), "linestyles": DASHED[shear]}
-                looks["array"] = broken["time"][broken["shear"] == shear]
-            drawn = LineCollection(list(lines), label=f"{label}{number}", **looks)
-            if shown.by_time:
-                drawn.update_scalarmappable()  # the legend has one of the colours
-            panel.add_collection(drawn, autolim=False)
 
 
 def out_of_frame(disks: Disks, shown: Field, index: int, window: Window) -> str:

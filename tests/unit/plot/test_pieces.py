@@ -12,9 +12,10 @@ from typer.testing import CliRunner
 from dembound.cli import app
 from dembound.errors import CaseError
 from dembound.kinds import kind_of_record
+from dembound.plot.crack_lines import TIME_MAP
 from dembound.plot.moving import MovingScene
 from dembound.plot.pieces import HUES, NO_PIECE, SINGLE, plot_sieve
-from dembound.plot.scene import TIME_MAP, plot_scene
+from dembound.plot.scene import plot_scene
 from dembound.results.new_record import write_derived
 from dembound.results.vtk import write_paraview
 
