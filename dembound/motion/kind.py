@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import h5py
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from dembound.motion.simulation import Simulation
-
-CracksBy = Literal["kind", "time"]
-"""What gives the colours of broken bonds in pictures of disks."""
 
 
 class MovingPicture(Protocol):
@@ -316,8 +313,7 @@ class Kind(ABC, Generic[C, S]):
     ) -> Figure:
         """A field of a record as a picture, of one snapshot or of suitable ones.
 
-        exaggerate : as of `moving_picture`. cracks : what colours broken bonds of disks. Raises CaseError if the field
-        is missing.
+        exaggerate : as of `moving_picture`. cracks : colours of broken bonds. Raises CaseError if the field is missing.
         """
 
     @abstractmethod

@@ -38,17 +38,19 @@ def displacement_of(snapshot: h5py.Group, name: str = "displacement") -> np.ndar
     return np.zeros((len(snapshot["velocity"]), 2))
 
 
-def are_near(places: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """The disks (n,) that are not far from the body, at places (n, 2) and of radii (n,) m."""
+def are_near(places: np.ndarray, radii: np.ndarray, scene: Window) -> np.ndarray:
+    """The disks (n,) in a scene or not far from the body, at places (n, 2) and of radii (n,) m."""
     share = 0.5 * (1.0 - BODY)
     low, high = np.quantile(places, (share, 1.0 - share), axis=0)
     reach = FARTHEST * (high - low).max() + 2.0 * radii.max()
-    return Window(low - reach, high - low + 2.0 * reach).touches(places, radii)
+    around = Window(low - reach, high - low + 2.0 * reach)
+    return around.touches(places, radii) | scene.touches(places, radii)
 
 
 def near_ones(file: h5py.File, snapshot: h5py.Group) -> np.ndarray:
-    """The disks (n,) of a snapshot of an open record that are not far from the body."""
-    return are_near(file["particles/position"][:] + displacement_of(snapshot), file["particles/radius"][:])
+    """The disks (n,) of a snapshot of an open record in the scene at the start or not far from the body."""
+    start, radii = file["particles/position"][:], file["particles/radius"][:]
+    return are_near(start + displacement_of(snapshot), radii, Window.around(start, radii))
 
 
 def framed(scene: Window, positions: np.ndarray, radii: np.ndarray, moves: Iterable[np.ndarray]) -> Window:
@@ -59,7 +61,7 @@ def framed(scene: Window, positions: np.ndarray, radii: np.ndarray, moves: Itera
     window = scene
     for moved in moves:
         places = positions + moved
-        near = are_near(places, radii)
+        near = are_near(places, radii, scene)
         window = window.with_other(Window.around(places[near], radii[near]))
     return window
 

@@ -15,7 +15,6 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.messages import counted
-from dembound.motion.kind import CracksBy
 from dembound.plot.crack_lines import mark_cracks, times_of_cracks
 from dembound.plot.disks import Window, draw_continuum, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks
@@ -35,6 +34,7 @@ from dembound.plot.pieces import name_hues
 from dembound.plot.places import framed
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
+from dembound.words import CracksBy
 
 LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""

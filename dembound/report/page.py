@@ -119,8 +119,6 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
     for line in missing:
         say(line)
     live: dict[str, Any] = {f"chart-{number}": each.chart for number, each in enumerate(charts)}
-    if sieve is not None:
-        live["sieve"] = sieve.chart
     for number, each in enumerate(shown):
         if each.frames is not None:
             live[f"frames-{number}"] = vars(each.frames)

@@ -33,7 +33,7 @@ from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.kinds.bar.summary import bar_facts, bar_outcome, part_of, spalls_of, summarise_bar
 from dembound.kinds.bar.warnings import bar_warnings
 from dembound.kinds.bar.warnings_after import warnings_after_bar
-from dembound.motion.kind import Beginning, CracksBy, Finding, Kind, MovingPicture, OnLook, Stages
+from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial
@@ -42,7 +42,7 @@ from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 from dembound.results.vtk import in_space, passed_through, shown
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import meshio

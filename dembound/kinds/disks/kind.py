@@ -47,7 +47,6 @@ from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.endings import rest_rule
 from dembound.motion.kind import (
     Beginning,
-    CracksBy,
     Finding,
     Kind,
     MovingPicture,
@@ -63,7 +62,7 @@ from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import h5py

@@ -16,6 +16,7 @@ from dembound.plot.crack_lines import TIME_MAP
 from dembound.plot.moving import MovingScene
 from dembound.plot.pieces import HUES, NO_PIECE, SINGLE, plot_sieve
 from dembound.plot.scene import plot_scene
+from dembound.report.page import write_report
 from dembound.results.new_record import write_derived
 from dembound.results.vtk import write_paraview
 
@@ -66,6 +67,13 @@ def test_a_sieve_curve_has_the_shares_of_the_mass_in_pieces_not_larger(apart, cr
     for draw in (lambda: plot_sieve([cracked_run]), lambda: plot_scene(cracked_run, field="fragments")):
         with pytest.raises(CaseError, match=r"(holds|has) no fragments"):
             draw()
+
+
+def test_a_page_has_the_fragments_and_their_sieve_curve(apart, tmp_path):
+    write_report([apart], tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    assert 'alt="cracked: fragments of ' in text
+    assert 'alt="Sieve curves of the fragments; ' in text
 
 
 def test_paraview_has_the_number_of_each_disks_piece(apart, tmp_path):
