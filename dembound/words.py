@@ -2,7 +2,10 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
+
+CracksBy = Literal["kind", "time"]
+"""What gives the colours of broken bonds in pictures of disks."""
 
 Entries = Iterator[tuple[str, str]]
 """Names and their texts, in the order of printing."""

@@ -86,6 +86,9 @@ def names_of(choices: Any) -> str:
 CALIBRATIONS = "calibrations"
 """Name of results that do not belong to a run."""
 
+RUNS_OF_DISKS = "runs of disks"
+"""Name of results that may have fragments."""
+
 SINGLE = ("--field", "--energy")
 """Options whose pictures show one run."""
 
@@ -135,6 +138,7 @@ SceneField = Literal[
     "peak",
     "unbalanced",
     "layer",
+    "fragments",
 ]
 """Fields of a whole scene; each kind of scene accepts some of them."""
 
@@ -163,11 +167,17 @@ class Plotted:
         Option(help="Number of the snapshot, −1 the last; by default that of the largest values."),
     ] = None
     exaggerate: Exaggerated = None
+    cracks: Annotated[
+        Literal["kind", "time"], Option(metavar="BY", help="Colours of broken bonds of disks: by kind or time.")
+    ] = "kind"
+    sieve: Annotated[
+        bool, Option("--sieve", help="Sieve curves of fragments: share of their mass not larger than a diameter.")
+    ] = False
     table: Annotated[Path | None, Option(help="Table of the lines drawn (CSV).", callback=writable)] = None
 
     def problems(self, kind: str, count: int) -> Iterator[str]:
         """Options that exclude each other, for a number of results of a kind."""
-        pictures = {"--field": self.field, "--energy": self.energy, "--boundary": self.boundary}
+        pictures = {"--field": self.field, "--energy": self.energy, "--sieve": self.sieve, "--boundary": self.boundary}
         choices = {"--component": self.component, "--monitor": self.monitor}
         asked = [option for option, value in pictures.items() if value]
         chosen = [option for option, value in choices.items() if value]
@@ -178,8 +188,12 @@ class Plotted:
         else:
             yield from (f"{option}: is not allowed together with {asked[0]}" for option in asked[1:] + chosen if asked)
         yield from (f"{option}: shows one run, name one" for option in asked if option in SINGLE and count > 1)
-        if self.snapshot is not None and self.field is None:
-            yield "--snapshot: goes with --field"
+        if self.snapshot is not None and self.field is None and not self.sieve:
+            yield "--snapshot: goes with --field or --sieve"
+        if self.cracks != "kind" and (self.field is None or kind != RUNS_OF_DISKS):
+            yield "--cracks: goes with --field of runs of disks"
+        if self.sieve and kind not in (RUNS_OF_DISKS, CALIBRATIONS):
+            yield "--sieve: is of runs of disks"
         if self.exaggerate is not None and self.field is None:
             yield "--exaggerate: goes with --field"
         if self.table is not None and self.field is not None:
@@ -194,7 +208,12 @@ class Plotted:
         if self.field is not None:
             from dembound.kinds import kind_of_record
 
-            return kind_of_record(files[0]).field_picture(files[0], self.field, self.snapshot, self.exaggerate)
+            asked = self.snapshot, self.exaggerate, self.cracks
+            return kind_of_record(files[0]).field_picture(files[0], self.field, *asked)
+        if self.sieve:
+            from dembound.plot.pieces import plot_sieve
+
+            return plot_sieve(files, self.snapshot)
         if self.energy:
             from dembound.plot.energy import plot_energy
 

@@ -48,10 +48,14 @@ def pieces(count: int, pairs: np.ndarray, broken: np.ndarray) -> np.ndarray:
 class Fragments:
     """The fragments of a body.
 
+    number : (f,) of each, one more than that of its first disk, ascending: the part of a fragment with its first disk
+    keeps the number as it breaks. of_disk : (n,) the number of the fragment of each disk, 0 for no fragment.
     disks, mass, diameter : (f,) of each: number of disks, kg/m, and √(4A/π) m with the area A of its disks over the
     solid fraction of the packing. body : mass of the whole body, kg/m.
     """
 
+    number: np.ndarray
+    of_disk: np.ndarray
     disks: np.ndarray
     mass: np.ndarray
     diameter: np.ndarray
@@ -60,15 +64,17 @@ class Fragments:
     def describe(self) -> dict[str, float]:
         """Number of fragments of two disks or more, `diameter` of the largest (m), share of the body's mass.
 
-        Also `singles`, the share of single disks in the mass of all fragments; both are 0 without fragments.
+        Also `singles`, the share of single disks in the mass of all fragments, and `d50` and `d80` (m), up to which are
+        the diameters of 50 and 80 % of that mass; all are 0 without fragments.
         """
         several, mass = self.disks > 1, float(self.mass.sum())
+        sieved = {f"d{share}": _below(self.diameter, self.mass, share / 100.0) if mass else 0.0 for share in (50, 80)}
         return {
             "count": int(np.count_nonzero(several)),
             "largest": float(self.diameter.max(initial=0.0)),
             "share": mass / self.body,
             "singles": float(self.mass[~several].sum()) / mass if mass > 0.0 else 0.0,
-        }
+        } | sieved
 
 
 class Debris:
@@ -124,10 +130,13 @@ class Debris:
             return None
         piece = pieces(self._count, self._bonds, broken)
         off = self._breaks & ~np.isin(piece, piece[self._held])
-        _, number = np.unique(piece[off], return_inverse=True)
+        _, first, number = np.unique(piece[off], return_index=True, return_inverse=True)
+        numbers, of_disk = 1 + np.flatnonzero(off)[first], np.zeros(self._count, np.int32)
+        of_disk[off] = numbers[number]
         mass = np.bincount(number, self._mass[off[self.body]])
         area = np.bincount(number, self._area[off])
-        return Fragments(np.bincount(number), mass, np.sqrt(4.0 * area / np.pi), float(self._mass.sum()))
+        sizes = np.bincount(number), mass, np.sqrt(4.0 * area / np.pi)
+        return Fragments(numbers, of_disk, *sizes, float(self._mass.sum()))
 
 
 def _run_out(sign: float, mass: np.ndarray, begun: np.ndarray, gone: np.ndarray) -> dict[str, float]:

@@ -252,7 +252,9 @@ def storage_of(case: DiskCase, z: SceneSizes) -> Storage:
     numbers = has_history + output.peaks + layered
     vtu = total(counts, "vtu", vtu_forces=output.contacts, **fields | {"numbers": numbers})
     vtkhdf = total(counts, "vtkhdf", vtkhdf_forces=output.contacts, **fields)
-    record = total(counts, "snapshot", tensors=output.stress, coordination=has_history, forces=output.contacts)
+    record = total(
+        counts, "snapshot", tensors=output.stress, coordination=has_history, forces=output.contacts, pieces=has_history
+    )
     fixed = for_paraview(output.paraview, 0.0, total(counts, "vtkhdf_header", numbers=layered))
     stages = {
         "saved_pairs": has_history,

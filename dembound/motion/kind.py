@@ -22,7 +22,7 @@ from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import h5py
@@ -308,10 +308,12 @@ class Kind(ABC, Generic[C, S]):
         """The pictures of a run by name, besides the picture of its monitors' velocities."""
 
     @abstractmethod
-    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+    def field_picture(
+        self, record: Path, field: str, snapshot: int | None, exaggerate: float | None, cracks: CracksBy = "kind"
+    ) -> Figure:
         """A field of a record as a picture, of one snapshot or of suitable ones.
 
-        exaggerate : as of `moving_picture`. Raises CaseError if the field is missing.
+        exaggerate : as of `moving_picture`. cracks : colours of broken bonds. Raises CaseError if the field is missing.
         """
 
     @abstractmethod

@@ -95,6 +95,7 @@ BYTES: Mapping[str, Counts] = {
     "snapshot": {"disk": 48, "node": 72},
     "bar_snapshot": {"node": 64},
     "coordination": {"disk": 8},
+    "pieces": {"disk": 4},  # of disks whose bonds have broken
     "tensors": {"disk": 24},
     "forces": {"contact": 41},
     "history": {"sample": 56},  # time, displacement, velocity

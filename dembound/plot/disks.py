@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection, TriMesh
+from matplotlib.colors import Colormap
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 from matplotlib.tri import Triangulation
@@ -91,6 +92,7 @@ def draw_field(
     limits: tuple[float, float],
     scale: float,
     holes: Sequence[Hole] = (),
+    palette: Colormap | None = None,
 ) -> ScalarMappable:
     """Fill the axes with a window of a field; returns the object for the colour bar.
 
@@ -108,14 +110,16 @@ def draw_field(
         pixels per metre. Disks below `SMALLEST_PIXELS` are replaced by the mean of the field on a grid.
     holes
         the cells of this grid are filled up to the outlines of holes.
+    palette
+        colours of values that are numbers of colours, which have no mean: disks of any size are drawn.
     """
     axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
     axes.grid(False)
     inside = window.touches(positions, radii)
     positions, radii, values = positions[inside], radii[inside], values[inside]
-    colours = colours_within(limits)
+    colours = colours_within(limits) if palette is None else {"cmap": palette, "clim": limits}
     diameter = 2.0 * float(radii.mean())
-    if diameter * scale >= SMALLEST_PIXELS:
+    if palette is not None or diameter * scale >= SMALLEST_PIXELS:
         return draw_disks(axes, positions, radii, array=values, linewidths=0.0, **colours)
     means = mean_on_grid(positions, values, window, max(1.0 / scale, CELL_DIAMETERS * diameter))
     _fill_beside(means, window, holes)

@@ -7,6 +7,7 @@ from typing import Literal
 
 import h5py
 import numpy as np
+from matplotlib.colors import Colormap
 
 from dembound.holes import Hole
 from dembound.plot.disks import ContinuumCells, Window, read_continuum
@@ -15,7 +16,9 @@ from dembound.plot.outlines import read_holes
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import laws_in_words, laws_of, require_run, snapshots_of, text_of, walls_at
 
-FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced", "layer"]
+FieldName = Literal[
+    "velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced", "layer", "fragments"
+]
 
 OF_THE_RUN = ("peak", "layer")
 """The fields that do not change with time."""
@@ -122,7 +125,8 @@ class Field:
     values of the nodes of a continuum, None if it has none; moved (k, n, 2) and moved_beyond (k, m, 2) m,
     displacements with which disks and nodes are drawn, None for none; walls (p, 2) m as they are drawn, None where
     they are at the start; cut, whether values exceed the limits; gone (k, n) bool, disks that have vanished; joints,
-    segments each time, None where the field has no time.
+    segments each time, None where the field has no time; palette, the colours of values that are numbers of colours;
+    by_time: whether cracks are coloured by the time at which they broke.
     """
 
     captions: list[str]
@@ -139,6 +143,8 @@ class Field:
     cut: bool = False
     gone: np.ndarray | None = None
     joints: tuple[Segments | None, ...] = ()
+    palette: Colormap | None = None
+    by_time: bool = False
 
     @property
     def extend(self) -> Literal["neither", "max", "both"]:

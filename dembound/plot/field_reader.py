@@ -1,7 +1,8 @@
 """Reads a field of the disks of a record: at some times, or of the whole run."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from typing import get_args
 
 import h5py
@@ -11,12 +12,17 @@ from dembound.errors import CaseError
 from dembound.plot.disks import GROUP, is_scattered
 from dembound.plot.field import FORCES, OF_THE_RUN, Field, FieldName
 from dembound.plot.lines_of_ground import gone_at, segments_in
-from dembound.plot.places import crack_lines, displacement_of, exaggeration
+from dembound.plot.pieces import PALETTE, hues_at
+from dembound.plot.places import crack_lines, displacement_of, exaggeration, near_ones
 from dembound.results.histories import FREE_FIELD, UNITS
+from dembound.results.pieces import pieces_at
 from dembound.results.reader import COMPONENTS, cracks_until, snapshot_of, snapshots_of, walls_at
 
-QUANTILE, OUTLYING = 0.995, 2.0
+QUANTILE, OUTLYING = 0.995, 1.25
 """Share of the disks that a colour scale has at least, and over whose largest size the largest of all is cut off."""
+
+FRAGMENTS = "fragments"
+"""Name of the field of the pieces of broken ground."""
 
 MEGA = 1e6
 """Pascals in a megapascal."""
@@ -34,7 +40,8 @@ class FieldInRecord:
 
     groups, all snapshots; dataset and beyond, names in each of them, the latter of a continuum, None for none; column
     of both; words, sense and unit as of a `Field`, scale the SI value of the unit; largest (g,) size in each snapshot,
-    in the unit, of all disks or, if `cut`, of `QUANTILE` of them; factor of the displacements that are drawn.
+    in the unit, of all disks or, if `cut`, of `QUANTILE` of them; factor of the displacements that are drawn. The
+    values of `FRAGMENTS` are numbers in `PALETTE`.
     """
 
     groups: Sequence[h5py.Group]
@@ -67,10 +74,11 @@ class FieldInRecord:
                 moved_beyond = self.factor * np.array([group[f"{GROUP}/displacement"][:, :2] for group in chosen])
         return Field(
             captions=[f"t = {time:.3g} s" for time in times],
-            values=np.array([group[self.dataset][:, self.column] for group in chosen]) / self.scale,
+            values=np.array([self._values_in(group) for group in chosen]),
             beyond=beyond,
+            palette=PALETTE if self.dataset == FRAGMENTS else None,
             cracks=[drawn_cracks(file, time, moved, self.factor) for time, moved in zip(times, moves, strict=True)],
-            limits=(-self.limit, self.limit),
+            limits=(-self.limit, self.limit) if self.dataset != FRAGMENTS else (0.0, PALETTE.N - 1.0),
             name=self.words,
             unit=self.unit,
             sense=self.sense,
@@ -81,6 +89,13 @@ class FieldInRecord:
             gone=None if ends is None else np.array(times)[:, None] > ends,
             joints=tuple(segments_in(group, self.factor) for group in chosen),
         )
+
+    def _values_in(self, group: h5py.Group) -> np.ndarray:
+        """The values (n,) of disks in a snapshot."""
+        if self.dataset != FRAGMENTS:
+            values: np.ndarray = group[self.dataset][:, self.column] / self.scale
+            return values
+        return hues_at(group.file, float(group.attrs["time"]))
 
 
 def drawn_cracks(file: h5py.File, time: float, moved: np.ndarray, factor: float) -> dict[str, np.ndarray]:
@@ -100,6 +115,8 @@ def find_field(
     if name not in get_args(FieldName):
         raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
     groups = snapshots_of(file, required=True)
+    if name == FRAGMENTS:
+        return _fragments(file, groups, exaggerate)
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:
         having = "static stages that stalled" if name == "unbalanced" else "runs with output.stress = true"
@@ -107,16 +124,26 @@ def find_field(
         raise CaseError([f"{file.filename}: holds no {lacking}; {having} do"])
     is_beyond = f"{GROUP}/{dataset}" in groups[0] and not (dataset == "stress" and is_scattered(file))
     beyond = f"{GROUP}/{dataset}" if is_beyond else None
-    sizes = _sizes(groups, dataset)
+    sizes = _sizes(groups, dataset, (near_ones(file, group) for group in groups))
     if beyond is not None:
-        sizes = np.maximum(sizes, _sizes(groups, beyond, _outside_layers(file)))
+        sizes = np.maximum(sizes, _sizes(groups, beyond, repeat(_outside_layers(file))))
     scale = MEGA if name in STRESSES else 1.0
-    column, words, unit = _column(name, component, sizes[:, 1].max(axis=0))
-    most, whole = sizes[:, :, column].max(axis=0)
-    cut = bool(whole > OUTLYING * most > 0.0)
+    most, whole = sizes.max(axis=0)
+    outlying = (whole > OUTLYING * most) & (most > 0.0)
+    column, words, unit = _column(name, component, np.where(outlying, most, whole))
+    cut = bool(outlying[column])
     largest, factor = sizes[:, 0 if cut else 1, column] / scale, exaggeration(file, groups, exaggerate)
     sense = SENSES.get(name, "")
     return FieldInRecord(groups, dataset, beyond, column, words, sense, unit, scale, largest, cut, factor)
+
+
+def _fragments(file: h5py.File, groups: Sequence[h5py.Group], exaggerate: float | None) -> FieldInRecord:
+    """The fragments at the snapshots of an open record, of which the last is shown."""
+    if pieces_at(file, float(groups[-1].attrs["time"])) is None:
+        raise CaseError([f"{file.filename}: holds no fragments; complete runs whose bonds broke do"])
+    factor = exaggeration(file, groups, exaggerate)
+    order = np.arange(len(groups), dtype=float)
+    return FieldInRecord(groups, FRAGMENTS, None, 0, FRAGMENTS, "", "", 1.0, order, factor=factor)
 
 
 def evenly_chosen(count: int, most: int) -> list[int]:
@@ -165,9 +192,9 @@ def _liveliest(file: h5py.File, groups: Sequence[h5py.Group]) -> int | None:
     return None if at is None else int(np.argmin([abs(group.attrs["time"] - at) for group in groups]))
 
 
-def _sizes(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndarray = slice(None)) -> np.ndarray:
-    """Sizes (g, 2, columns) of a dataset, or of its chosen rows, in snapshots: of `QUANTILE` of them, and of all."""
-    sizes = (np.abs(group[dataset][:][chosen]) for group in groups)
+def _sizes(groups: Sequence[h5py.Group], dataset: str, chosen: Iterable[np.ndarray]) -> np.ndarray:
+    """Sizes (g, 2, columns) of the chosen rows of a dataset in each snapshot: of `QUANTILE` of them, and of all."""
+    sizes = (np.abs(group[dataset][:][rows]) for group, rows in zip(groups, chosen, strict=False))
     return np.array([np.quantile(each, (QUANTILE, 1.0), axis=0, method="inverted_cdf") for each in sizes])
 
 

@@ -16,10 +16,19 @@ from dembound.plot.field import OF_THE_RUN, Field, FieldName, read_disks
 from dembound.plot.field_reader import find_field
 from dembound.plot.histories import plot_histories
 from dembound.plot.places import displacement_of, framed
-from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part, out_of_frame
+from dembound.plot.scene import (
+    DRAWING,
+    LONG,
+    add_colour_bars,
+    close_up,
+    draw_panel,
+    mark_monitors,
+    mark_part,
+    out_of_frame,
+    with_margins,
+)
 from dembound.plot.style import (
     COLOURS,
-    Powers,
     lay_out,
     new_figure,
     outside_legend,
@@ -206,19 +215,21 @@ class MovingScene:
             largest = found.at([found.groups[int(np.argmax(found.largest))]])
             last = found.at([found.groups[-1]])
         is_long = max(self._window.size) > LONG * min(self._window.size)
-        self._part = close_up(self._disks, largest.values[0]) if is_long else None
-        self._make_panels()
+        self._part = close_up(self._disks, largest.values[0], largest.palette is not None) if is_long else None
+        self._make_panels(last)
         self._fill(last, len(self.times) - 1)
-        looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "extend": last.extend}
-        self.figure.colorbar(self._colours, ax=self._panels, label=last.label, **looks)
+        add_colour_bars(self.figure, self._panels, self._colours, last)
         moved = f", displacements × {found.factor:g}" if found.factor not in (0.0, 1.0) else ""
         self.words = f"{self._disks.case}: {last.name} of {self._disks.in_words}{moved}"
         self.figure.suptitle("\n".join(filter(None, [self.words, self._disks.laws])), fontsize=11)
         outside_legend(self.figure, self._panels, columns=3)
         lay_out(self.figure)
 
-    def _make_panels(self) -> None:
-        """Make one panel, and for a long scene another for the enlarged part: below, or beside an upright scene."""
+    def _make_panels(self, last: Field) -> None:
+        """Make one panel, and for a long scene another for the enlarged part: below, or beside an upright scene.
+
+        last : the field at the last snapshot.
+        """
         windows = [self._window] if self._part is None else [self._window, self._part]
         upright = bool(self._part and self._window.size[1] > self._window.size[0])
         self._scales = [float(min(DRAWING / window.size)) for window in windows]
@@ -228,7 +239,7 @@ class MovingScene:
             self.width, self.height = float(across.sum()) + 3.8, float(up.max()) + 2.0
             shape = {"ncols": len(windows), "width_ratios": across}
         else:
-            self.width, self.height = max(float(across.max()), 3.0) + 1.8, float(up.sum()) + 2.2
+            self.width, self.height = with_margins(float(across.max()), float(up.sum()) + 2.2, last)
             shape = {"nrows": len(windows), "height_ratios": up}
         self.figure = new_figure(self.width, self.height)
         self._panels = list(self.figure.subplots(squeeze=False, **shape).flat)

@@ -10,11 +10,11 @@ from dembound.plot.disks import Window
 FROM = 0.1
 """Displacement in mean diameters from which disks are drawn where they are."""
 
-FRAMED = 0.999
-"""Share of the disks, counted from either end along x and y, that a frame of moved disks has at least."""
+BODY = 0.95
+"""Share of the disks along x and along y between whose ends the body is."""
 
-FARTHEST = 1.0
-"""Distance from the scene at the start, over its longer side, beyond which disks are out of the frame."""
+FARTHEST = 0.5
+"""Distance from the body, over its longer side, beyond which disks are far from it."""
 
 PARTED = 1.3
 """Distance of two disks, over the sum of their radii, from which the crack between them is drawn no more."""
@@ -38,19 +38,31 @@ def displacement_of(snapshot: h5py.Group, name: str = "displacement") -> np.ndar
     return np.zeros((len(snapshot["velocity"]), 2))
 
 
+def are_near(places: np.ndarray, radii: np.ndarray, scene: Window) -> np.ndarray:
+    """The disks (n,) in a scene or not far from the body, at places (n, 2) and of radii (n,) m."""
+    share = 0.5 * (1.0 - BODY)
+    low, high = np.quantile(places, (share, 1.0 - share), axis=0)
+    reach = FARTHEST * (high - low).max() + 2.0 * radii.max()
+    around = Window(low - reach, high - low + 2.0 * reach)
+    return around.touches(places, radii) | scene.touches(places, radii)
+
+
+def near_ones(file: h5py.File, snapshot: h5py.Group) -> np.ndarray:
+    """The disks (n,) of a snapshot of an open record in the scene at the start or not far from the body."""
+    start, radii = file["particles/position"][:], file["particles/radius"][:]
+    return are_near(start + displacement_of(snapshot), radii, Window.around(start, radii))
+
+
 def framed(scene: Window, positions: np.ndarray, radii: np.ndarray, moves: Iterable[np.ndarray]) -> Window:
     """The window of a scene with its disks, of positions (n, 2) and radii (n,) m, after each of some moves (n, 2) m.
 
-    It leaves out the outermost disks, beyond `FRAMED` of all, and those farther than `FARTHEST` from the scene.
+    It leaves out those that are then far from the body.
     """
-    reach = FARTHEST * scene.size.max()
     window = scene
     for moved in moves:
         places = positions + moved
-        ends = np.quantile(places, (1.0 - FRAMED, FRAMED), axis=0, method="inverted_cdf")
-        low = np.maximum(ends[0] - radii.max(), scene.corner - reach)
-        high = np.minimum(ends[1] + radii.max(), scene.corner + scene.size + reach)
-        window = window.with_other(Window(low, high - low))
+        near = are_near(places, radii, scene)
+        window = window.with_other(Window.around(places[near], radii[near]))
     return window
 
 
@@ -73,16 +85,17 @@ def crack_lines(
         of the displacements in the picture.
     """
     first, second = cracks["particles"].T
-    place = cracks["position"]
-    along = place - positions[first]  # from the first disk to the contact: right for pairs across periodic sides, too
     contact = radii[first] + radii[second]
-    along *= (contact / np.maximum(np.hypot(*along.T), 1e-300))[:, None]
+    along, broke = positions[second] - positions[first], cracks["position"] - positions[first]
+    broke *= (contact / np.maximum(np.hypot(*broke.T), 1e-300))[:, None]
+    across_periodic_sides = np.hypot(*along.T) > 2.0 * contact
+    along[across_periodic_sides] = broke[across_periodic_sides]
     opening = moved[second] - moved[first]
     parted = np.hypot(*(along + opening).T) > PARTED * contact
     now = along + factor * opening
     across = np.stack([-now[:, 1], now[:, 0]], axis=1)
     across *= (np.minimum(radii[first], radii[second]) / np.maximum(np.hypot(*now.T), 1e-300))[:, None]
-    middle = place + factor * 0.5 * (moved[first] + moved[second])
+    middle = positions[first] + factor * moved[first] + (radii[first] / contact)[:, None] * now
     ends = np.stack([middle - across, middle + across], axis=1)
     ends[parted] = np.nan
     return ends

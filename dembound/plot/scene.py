@@ -1,13 +1,13 @@
 """The whole scene at one time, or a long one at several times, with disks coloured by a field."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
@@ -15,12 +15,12 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.casefile.disks.monitor_rows import shown_names
 from dembound.casefile.messages import counted
+from dembound.plot.crack_lines import mark_cracks, times_of_cracks
 from dembound.plot.disks import Window, draw_continuum, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks
 from dembound.plot.field_reader import read_field
 from dembound.plot.lines import (
     ABOVE_CRACKS,
-    ABOVE_DISKS,
     LETTER_WIDTH,
     NAME_HEIGHT,
     mark_areas,
@@ -30,9 +30,11 @@ from dembound.plot.lines import (
     mark_walls,
 )
 from dembound.plot.outlines import draw_outlines
+from dembound.plot.pieces import name_hues
 from dembound.plot.places import framed
 from dembound.plot.style import FEWEST_NUMBERS, Powers, finished, measured_once, new_figure, styled
 from dembound.results.reader import open_record
+from dembound.words import CracksBy
 
 LONG = 6.0
 """A scene longer than this many times its width has a second panel with an enlarged part of it."""
@@ -58,11 +60,11 @@ SHORTEST = {"x": 0.8, "y": 0.4}
 TICK_APART, SMALL = 0.6, 7
 """Distance (inches) between numbers of a panel with room for three; size (points) of numbers without this room."""
 
-CRACKS = {"bond broken in tension": "black", "bond broken in shear": "#C000C0"}
-"""Names of the two kinds of cracks in the legend; colours of their lines."""
+ROOM_OF_BAR = 1.4
+"""Inches for a second colour bar."""
 
-CRACK_WIDTH, THINNEST_CRACK = 0.12, 0.6
-"""Width of the line of a crack in mean diameters, and its least width in points."""
+LEGEND_WIDTH = 8.3
+"""Inches of a legend with two columns."""
 
 FOOT: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 1.4}
 """Line below which the continuum has no free field: above its elements, below its ties."""
@@ -78,10 +80,11 @@ def plot_scene(
     field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
     exaggerate: float | None = None,
+    cracks: CracksBy = "kind",
 ) -> Figure:
     """The scene at a snapshot, with the monitors and one colour scale for the run.
 
-    The scale has 99.5 % of the disks, if the others are beyond twice of it. Bonds broken up to this time are lines
+    The scale has 99.5 % of the disks, if the others are beyond 1.25 times of it. Bonds broken up to this time are lines
     across them, as wide as the smaller disk; the legend has their number. A very long scene has another panel with an
     enlarged part of it. A continuum round the disks has the same colours, its absorbing layers are hatched. Thin lines
     separate the layers of the ground.
@@ -92,22 +95,25 @@ def plot_scene(
         the ``run.h5`` of a run.
     snapshot
         number of the snapshot; negative ones count from the last. By default the one in which the field is largest, of
-        velocities a monitor's; of a long horizontal scene, as many as fit on the page, evenly chosen.
+        velocities a monitor's, of fragments the last; of a long horizontal scene, as many as fit, evenly chosen.
     field
         velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
-        the whole run in m/s; layer, its number from the surface. The record must contain it.
+        the whole run in m/s; layer, its number from the surface; fragments, a hue for each. The record must contain it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
     exaggerate
         factor of the displacements with which disks, nodes, walls and cracks are drawn; 0 shows them at their first
         places. By default 1 if a disk moves by more than a tenth of the mean diameter in the run, else 0. Disks far
-        from all others are not in the frame, which has their number.
+        from the body, see `are_near`, are not in the frame, which has their number.
+    cracks
+        what gives the colours of broken bonds: their kind, or the time at which they broke.
 
     Raises CaseError when the file cannot be read, has no such snapshot or does not contain the field.
     """
     with open_record(run) as file:
         disks = read_disks(file)
         shown = read_field(file, field, component, snapshot, strips_on_page(disks.window), exaggerate)
+    shown = replace(shown, by_time=cracks == "time")
     window = disks.window
     if shown.moved is not None:
         window = framed(window, disks.positions, disks.radii, shown.moved)
@@ -116,11 +122,27 @@ def plot_scene(
         figure, panels, colours = _draw_long(disks, shown, window)
     else:
         figure, panels, colours = _draw_whole(disks, shown, window)
-    ticks = MaxNLocator(integer=True) if field == "layer" else None
-    looks: dict[str, Any] = {"shrink": 0.9, "pad": 0.02, "format": Powers(), "ticks": ticks, "extend": shown.extend}
-    figure.colorbar(colours, ax=panels, label=shown.label, **looks)
+    add_colour_bars(figure, panels, colours, shown)
     title = f"{disks.case}: {shown.name} of {disks.in_words}"
     return finished(figure, "\n".join(filter(None, [title, disks.laws])), panels, 3)
+
+
+def with_margins(width: float, height: float, shown: Field) -> tuple[float, float]:
+    """Width and height (inches) of a figure for panels of a width: with a colour bar, or with a longer legend."""
+    if shown.palette is None:
+        return max(width, 3.0) + 1.8, height
+    return max(width + 0.9, LEGEND_WIDTH), height + 0.9
+
+
+def add_colour_bars(figure: Figure, panels: Sequence[Axes], colours: ScalarMappable, shown: Field) -> None:
+    """The colour bars beside panels: of a field's values, if they are no numbers of colours, and of times of cracks."""
+    looks: dict[str, Any] = {"ax": panels, "shrink": 0.9, "pad": 0.02, "format": Powers()}
+    if shown.palette is None:
+        ticks = MaxNLocator(integer=True) if shown.name == "layer" else None
+        figure.colorbar(colours, label=shown.label, ticks=ticks, extend=shown.extend, **looks)
+    if (times := times_of_cracks(shown)) is not None:
+        figure.set_figwidth(figure.get_figwidth() + ROOM_OF_BAR)
+        figure.colorbar(times, label="time at which the bond broke (s)", **looks)
 
 
 def strips_on_page(scene: Window) -> int:
@@ -136,7 +158,7 @@ def _draw_whole(disks: Disks, shown: Field, window: Window) -> tuple[Figure, lis
     width, height = window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
     rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
-    figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
+    figure = new_figure(*with_margins(scale * width, scale * height + rows, shown))
     panel = figure.subplots()
     colours = draw_panel(panel, disks, shown, 0, window, scale * figure.dpi)
     out = out_of_frame(disks, shown, 0, window)
@@ -149,8 +171,8 @@ def _draw_long(disks: Disks, shown: Field, window: Window) -> tuple[Figure, list
     """Draw a window of a long scene as strips, one per time, and below or beside them an enlarged part of one."""
     upright = bool(window.size[1] > window.size[0])
     count = len(shown.captions)
-    framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
-    part = close_up(disks, shown.values[framed])
+    framed = int(np.argmax(np.abs(shown.values).max(axis=1))) if shown.palette is None else count - 1
+    part = close_up(disks, shown.values[framed], shown.palette is not None)
     room = DRAWING[1] if upright else DRAWING[0]
     scales = [room / max(each.size) for each in (window, part)]
     strip, close = (scale * min(each.size) for scale, each in zip(scales, (window, part), strict=True))
@@ -190,8 +212,13 @@ def mark_part(panel: Axes, part: Window) -> None:
     panel.add_patch(Rectangle((left, bottom), right - left, top - bottom, **looks))
 
 
-def close_up(disks: Disks, values: np.ndarray) -> Window:
-    """The part of a long scene around half the largest of values (n,), where colours change most."""
+def close_up(disks: Disks, values: np.ndarray, are_pieces: bool) -> Window:
+    """The part of a long scene around half the largest of values (n,), where colours change most.
+
+    are_pieces : values are of `PALETTE`, and the part is that in the middle of all fragments.
+    """
+    if are_pieces and values.any():
+        return part_around(disks, np.median(disks.positions[values > 0.0], axis=0))
     sizes = np.abs(values)
     return part_around(disks, disks.positions[np.argmin(np.abs(sizes - 0.5 * sizes.max()))])
 
@@ -216,7 +243,7 @@ def draw_panel(
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
     there = slice(None) if shown.gone is None else ~shown.gone[index]
     drawn = positions[there], disks.radii[there], shown.values[index][there]
-    colours = draw_field(panel, window, *drawn, shown.limits, scale, disks.holes)
+    colours = draw_field(panel, window, *drawn, shown.limits, scale, disks.holes, shown.palette)
     covered = isinstance(colours, AxesImage) and shown.moved is None  # cells of the image reach into holes
     draw_outlines(panel, disks.holes, disks.own_window, 2.0 * float(disks.radii.mean()), filled=covered)
     if disks.continuum is not None:
@@ -226,12 +253,14 @@ def draw_panel(
         if beyond is not None and disks.foot is not None:
             left, right = disks.continuum.window.extent[:2]
             panel.hlines(disks.foot, left, right, label="below: motion without the free field", **FOOT)
+    if shown.palette is not None:
+        name_hues(panel, drawn[2])
     mark_seams(panel, disks, window)
     mark_walls(panel, disks.walls if shown.walls is None else shown.walls)
     mark_layers(panel, disks, window, scale / panel.figure.dpi)
     mark_joints(panel, disks, shown.joints[index] if shown.joints else None)
     mark_areas(panel, disks)
-    _mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
+    mark_cracks(panel, shown, index, numbered, 2.0 * float(disks.radii.mean()) * scale * 72.0 / panel.figure.dpi)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         inches = pixels / panel.figure.dpi
         if inches > SHORTEST[name]:
@@ -242,21 +271,6 @@ def draw_panel(
         else:
             axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
-
-
-def _mark_cracks(panel: Axes, shown: Field, index: int, numbered: bool, diameter: float) -> None:
-    """A line at each bond broken up to one of the times; the legend may have their number at the last time.
-
-    diameter : mean, in points.
-    """
-    until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
-    width = max(THINNEST_CRACK, CRACK_WIDTH * diameter)
-    for shear, (label, colour) in enumerate(CRACKS.items()):
-        lines, last = (each["ends"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
-        if len(lines) > 0:
-            number = f" ({len(last):,}{until})" if numbered else ""
-            looks: dict[str, Any] = {"colors": colour, "linewidths": width, "zorder": ABOVE_DISKS}
-            panel.add_collection(LineCollection(list(lines), label=f"{label}{number}", **looks), autolim=False)
 
 
 def out_of_frame(disks: Disks, shown: Field, index: int, window: Window) -> str:

@@ -17,12 +17,14 @@ import numpy as np
 from dembound.errors import CaseError, RecordError, visible
 from dembound.files import require_folder, write_text
 from dembound.plot.energy import plot_energy
-from dembound.plot.field_reader import evenly_chosen
+from dembound.plot.field_reader import FRAGMENTS, evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
+from dembound.plot.pieces import plot_sieve
 from dembound.plot.record import plot_spectra
 from dembound.report.pictures import Picture, picture_of, uri_of
 from dembound.report.tables import TABLES, ReportedRun, read_runs
 from dembound.results.histories import read_histories
+from dembound.results.pieces import have_pieces
 from dembound.results.reader import reading, snapshots_of, understood
 from dembound.version import __version__
 
@@ -56,12 +58,13 @@ class Frames:
 
 @dataclass(frozen=True)
 class ShownRun:
-    """A run on a page, with the still pictures of its scene, its frames, and the picture of its energy."""
+    """A run on a page, with the still pictures of its scene, its frames, and pictures of its energy and fragments."""
 
     run: ReportedRun
     scenes: list[Picture]
     frames: Frames | None
     energy: Picture | None
+    pieces: Picture | None = None
 
 
 def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None] = lambda line: None) -> None:
@@ -108,6 +111,8 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
 
     shown = [_shown(run, attempt) for run in runs]
     charts = list(_charts(runs, attempt))
+    broken = [each.run.record for each in shown if each.pieces]
+    sieve = attempt(lambda: picture_of(plot_sieve(broken))) if broken else None
     for run in runs:
         if not run.summary and not run.has_histories_alone:
             missing.append(f"{run.record.parent}: has no summary, the run is not complete; tables lack it")
@@ -138,6 +143,7 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
         version=__version__,
         runs=shown,
         charts=charts,
+        sieve=sieve,
         missing=missing,
         live=_packed(live),
         tables=made,
@@ -169,7 +175,10 @@ def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> Sho
     scenes = attempt(lambda: [picture_of(figure) for name, figure in run.kind.pictures(run.record) if name == "scene"])
     frames = attempt(lambda: _frames(run))
     energy = attempt(lambda: picture_of(plot_energy(run.record)))
-    return ShownRun(run, scenes or [], frames, energy)
+    pieces = None
+    if have_pieces(run.record):
+        pieces = attempt(lambda: picture_of(run.kind.field_picture(run.record, FRAGMENTS, None, None)))
+    return ShownRun(run, scenes or [], frames, energy, pieces)
 
 
 def _frames(run: ReportedRun) -> Frames | None:

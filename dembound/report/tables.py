@@ -151,6 +151,17 @@ def _joint(heights: Mapping[str, float | None]) -> str:
     return ", ".join(f"{names[key]} {at:.3g} m" for key, at in heights.items() if at is not None) or NONE
 
 
+def _fragments(run: ReportedRun) -> Entries:
+    """The fragments at the end of a run; none where nothing came off."""
+    found = (run.summary.get("debris") or {}).get("fragments") or {}
+    if found.get("share"):
+        yield "of two disks or more", f"{found['count']:,}"
+        yield "share of the mass of the body", percent(found["share"], 3)
+        yield "of that, single disks", percent(found["singles"], 3)
+        for name, words in {"d50": "d50", "d80": "d80", "largest": "diameter of the largest"}.items():
+            yield words, f"{found[name]:.4g} m" if name in found else NONE
+
+
 def sides(runs: Sequence[ReportedRun]) -> Table | None:
     """Table of the sides: type, factors, energies that came in and absorbed energies; None without summaries."""
     rows = []
@@ -216,6 +227,7 @@ TABLES: dict[str, Callable[[Sequence[ReportedRun]], Table | None]] = {
     "changed_keys": lambda runs: side_by_side(
         "Keys of the cases that differ", runs, lambda run: _flat(run.summary.get("keys", {})), different=True
     ),
+    "fragments": lambda runs: side_by_side("Fragments at the end", runs, _fragments),
     "layers": layers,
     "monitors": monitors,
     "sides": sides,

@@ -20,6 +20,7 @@ from dembound.motion.state import Arrays
 from dembound.results.committed import new_file
 from dembound.results.datasets import CHUNK_BYTES, chunk_rows, extend
 from dembound.results.new_record import MOTION, UNBALANCED
+from dembound.results.pieces import PIECE, pieces_at
 from dembound.results.reader import cracks_until, datasets_in, open_record, snapshots_of, until, walls_at
 
 if TYPE_CHECKING:
@@ -180,6 +181,8 @@ def write_paraview(run: Path, folder: Path, kind: Kind[Any, Any], files: ParaVie
                 time = float(snapshot.attrs["time"])
                 fields = {name: dataset[:] for name, dataset in datasets_in(snapshot).items()}
                 fields |= {f"walls/{name}": points for name, points in walls_at(file, time).items()}
+                if (pieces := pieces_at(file, time)) is not None:
+                    fields[PIECE] = pieces
                 for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():
                     if name not in series:
                         series[name] = stack.enter_context(_series(folder, name, files))

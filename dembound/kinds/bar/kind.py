@@ -42,7 +42,7 @@ from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 from dembound.results.vtk import in_space, passed_through, shown
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import meshio
@@ -196,7 +196,9 @@ class Bars(Kind[BarCase, BarScene]):
         if has_monitors(record):
             yield "histories_stress", plot_histories([record], quantity="stress")
 
-    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+    def field_picture(
+        self, record: Path, field: str, snapshot: int | None, exaggerate: float | None, cracks: CracksBy = "kind"
+    ) -> Figure:
         """One field over place and time."""
         from dembound.plot.bar import plot_bar_field
 

@@ -12,6 +12,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.debris import AT_REST, RUN_OUT, WAYS, Debris, Rest
 from dembound.disks.scene import DiskScene
 from dembound.motion.trackers import Run
+from dembound.results.pieces import PIECE
 from dembound.results.reader import cracks_until, open_record, snapshots_of, until
 from dembound.words import percent
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 Column = tuple[np.ndarray, str]
 
-PIECES = {"count": "1", "largest": "m", "share": "1", "singles": "1"}
+PIECES = {"count": "1", "largest": "m", "share": "1", "singles": "1", "d50": "m", "d80": "m"}
 """Numbers of the fragments at a snapshot, with their units."""
 
 UNIT_OF_MASS = "kg/m"
@@ -30,28 +31,31 @@ def debris_columns(scene: DiskScene, file: h5py.File) -> dict[str, Column]:
     """Run-out and fragments at the k snapshots of an open record, by name: values and unit.
 
     time (k,); mass (k,), share (k,), centre (k, 2), left/x95 … right/angle (k,), see `Debris.run_out`; of a body with
-    bonds fragments/count … fragments/singles (k,), see `Fragments.describe`, and of each fragment, single disks too, at
-    any snapshot sizes/snapshot, sizes/disks, sizes/mass, sizes/diameter (f,). Nothing under linear laws, and without
-    snapshots.
+    bonds fragments/count … fragments/d80 (k,), see `Fragments.describe`, and of each fragment, single disks too, at
+    any snapshot sizes/snapshot, sizes/piece, sizes/disks, sizes/mass, sizes/diameter (f,); once bonds have broken
+    `PIECE` (k, n), the number of the fragment of each disk. Nothing under linear laws, and without snapshots.
     """
     snapshots = list(snapshots_of(file))
     if not scene.has_history or not snapshots:
         return {}
     debris, cracks = Debris(scene), cracks_until(file, np.inf)
-    rows, sizes = [], []
+    rows, sizes, of_disks = [], [], []
     for number, group in enumerate(snapshots):
         time = float(group.attrs["time"])
         row = {"time": time} | debris.run_out(group["displacement"][debris.body, :2])
         if (found := debris.fragments(until(cracks, time)["particles"])) is not None:
             row["fragments"] = found.describe()
-            sizes.append((np.full(len(found.disks), number), found.disks, found.mass, found.diameter))
+            sizes.append((np.full(len(found.disks), number), found.number, found.disks, found.mass, found.diameter))
+            of_disks.append(found.of_disk)
         rows.append(row)
     units = {"time": "s", "mass": UNIT_OF_MASS, "share": "1", "centre": "m"}
     columns = {name: (np.array([row[name] for row in rows]), unit) for name, unit in units.items()}
     inner = [*((side, RUN_OUT) for side in WAYS), *([("fragments", PIECES)] if sizes else [])]
     for of, numbers in inner:
         columns |= {f"{of}/{key}": (np.array([row[of][key] for row in rows]), unit) for key, unit in numbers.items()}
-    names = zip(("snapshot", "disks", "mass", "diameter"), ("1", "1", UNIT_OF_MASS, "m"), strict=True)
+    if of_disks and len(cracks["time"]):
+        columns[PIECE] = np.array(of_disks), "1"
+    names = zip(("snapshot", "piece", "disks", "mass", "diameter"), ("1", "1", "1", UNIT_OF_MASS, "m"), strict=True)
     together = map(np.concatenate, zip(*sizes, strict=True))
     return columns | {f"sizes/{name}": (values, unit) for (name, unit), values in zip(names, together, strict=False)}
 
@@ -91,7 +95,8 @@ def debris_in_words(found: Mapping[str, Any] | None) -> Iterator[str]:
     if (pieces := found["fragments"]) is not None and pieces["share"] > 0.0:
         yield (
             f"{pieces['count']:,} fragments of two disks or more, the largest {pieces['largest']:.3g} m, and "
-            f"{percent(pieces['singles'])} of their mass in single disks"
+            f"{percent(pieces['singles'])} of their mass in single disks; d50 {pieces['d50']:.3g} m, "
+            f"d80 {pieces['d80']:.3g} m"
         )
 
 

@@ -45,14 +45,24 @@ from dembound.kinds.disks.summary import (
 from dembound.kinds.disks.walls import require_clear
 from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.endings import rest_rule
-from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
+from dembound.motion.kind import (
+    Beginning,
+    Finding,
+    Kind,
+    MovingPicture,
+    OnLook,
+    Reduction,
+    Slower,
+    Stage,
+    Stages,
+)
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
-from dembound.words import Entries
+from dembound.words import CracksBy, Entries
 
 if TYPE_CHECKING:
     import h5py
@@ -224,7 +234,9 @@ class Disks(Kind[DiskCase, DiskScene]):
 
         yield "scene", plot_scene(record)
 
-    def field_picture(self, record: Path, field: str, snapshot: int | None, exaggerate: float | None) -> Figure:
+    def field_picture(
+        self, record: Path, field: str, snapshot: int | None, exaggerate: float | None, cracks: CracksBy = "kind"
+    ) -> Figure:
         """The scene with disks coloured by a field, or with lines for the forces of contacts."""
         from dembound.plot.field import FORCES
         from dembound.plot.packing import plot_chains
@@ -232,7 +244,7 @@ class Disks(Kind[DiskCase, DiskScene]):
 
         if field == FORCES:
             return plot_chains(record, snapshot)
-        return plot_scene(record, snapshot, cast("FieldName", field), exaggerate=exaggerate)
+        return plot_scene(record, snapshot, cast("FieldName", field), exaggerate=exaggerate, cracks=cracks)
 
     def moving_picture(self, record: Path, field: str | None, exaggerate: float | None) -> MovingPicture:
         """The scene with disks coloured by a field, by default velocity."""

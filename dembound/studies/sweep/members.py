@@ -136,7 +136,7 @@ UNITS = {
 """Unit -> last parts of names, without component; other names are pure numbers unless within `WITHIN`."""
 
 OF_DEBRIS = {
-    "m": ("x95", "x99", "centre", "largest"),
+    "m": ("x95", "x99", "centre", "largest", "d50", "d80"),
     "kg/m": ("mass",),
     "degrees": ("angle",),
     "s": ("rest",),

@@ -75,11 +75,18 @@ def test_fragments_are_pieces_of_intact_bonds_that_no_side_holds(scene: DiskScen
     pairs = scene.assembly.pairs
     cut = (block[pairs].sum(axis=1) == 1) | (single[pairs].sum(axis=1) == 1)
     debris = Debris(scene)
-    assert debris.fragments(pairs[:0]).describe() == {"count": 0, "largest": 0.0, "share": 0.0, "singles": 0.0}
+    assert debris.fragments(pairs[:0]).describe() == dict.fromkeys(
+        ("count", "largest", "share", "singles", "d50", "d80"), 0.0
+    )
     found = debris.fragments(pairs[cut][:, ::-1])  # in either order
     assert sorted(found.disks) == [1, 4]
-    expected = {"count": 1, "largest": np.sqrt(4.0 * 4.0 * 0.25 / np.pi), "share": 5.0 / 600.0, "singles": 0.2}
+    largest = np.sqrt(4.0 * 4.0 * 0.25 / np.pi)
+    expected = {"count": 1, "largest": largest, "share": 5.0 / 600.0, "singles": 0.2, "d50": largest, "d80": largest}
     assert found.describe() == pytest.approx(expected, rel=1e-12)
+    # the number of a fragment is one more than that of its first disk
+    assert found.number.tolist() == sorted([1 + np.flatnonzero(block)[0], 1 + np.flatnonzero(single)[0]])
+    assert (found.of_disk[block] == 1 + np.flatnonzero(block)[0]).all()
+    assert not found.of_disk[~block & ~single].any()
     free = Debris(build(small(LOOSE))).fragments(pairs[:0])
     assert free.disks.tolist() == [600]  # which no side holds
     sand = {"law": "linearpbond", "density": 2500.0, "emod": 1e7, "pb_emod": 0.0, "fric": 0.5, "kratio": 2.0}

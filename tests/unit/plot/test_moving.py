@@ -40,6 +40,7 @@ def test_disks_and_cracks_are_moved_by_their_exaggerated_displacements(cracked_r
     with h5py.File(cracked_run) as file:
         displacement = factor * file["snapshots/0001/displacement"][:, :2]
         moved = file["particles/position"][:] + displacement
+        radius = file["particles/radius"][:]
         cracks = {name: file["cracks"][name][:] for name in ("time", "position", "particles", "shear")}
     broken = cracks["time"] <= scene.times[1]
     panel = scene.figure.axes[0]
@@ -48,10 +49,11 @@ def test_disks_and_cracks_are_moved_by_their_exaggerated_displacements(cracked_r
     assert (moved > np.array([panel.get_xlim()[0], panel.get_ylim()[0]])).all()
     assert (moved < np.array([panel.get_xlim()[1], panel.get_ylim()[1]])).all()
     cracked = {each.get_label(): each for each in panel.collections if isinstance(each, LineCollection)}
-    # a crack is between its two disks, which is where its place at the start moves with their mean displacement
+    # a crack is between its two disks, at the surface of the first
     for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
         chosen = broken & (cracks["shear"] == shear)
         if chosen.any():
-            mean = displacement[cracks["particles"][chosen]].mean(axis=1)
+            first, second = cracks["particles"][chosen].T
+            to_contact = (radius[first] / (radius[first] + radius[second]))[:, None]
             middle = np.array(cracked[label].get_segments()).mean(axis=1)
-            np.testing.assert_allclose(middle, cracks["position"][chosen] + mean, rtol=1e-12)
+            np.testing.assert_allclose(middle, moved[first] + to_contact * (moved[second] - moved[first]), rtol=1e-12)

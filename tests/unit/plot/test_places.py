@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.plot.places import crack_lines
+from dembound.plot.disks import Window
+from dembound.plot.places import crack_lines, framed
 
 POSITIONS, RADII = np.array([[0.0, 0.0], [3.0, 0.0], [20.0, 0.0]]), np.array([1.0, 2.0, 1.0])
 
@@ -19,9 +20,23 @@ def test_a_crack_is_as_wide_as_the_smaller_disk_and_moves_with_both():
     np.testing.assert_allclose(lines(still), [[1.0, -1.0], [1.0, 1.0]])
     # the second disk goes round the first by 90°: from (3, 0) to (0, 3); twice as far with a factor of 2
     turned = np.array([[0.0, 0.0], [-3.0, 3.0], [0.0, 0.0]])
-    np.testing.assert_allclose(lines(turned), [[0.5, 1.5], [-1.5, 1.5]])
+    np.testing.assert_allclose(lines(turned), [[1.0, 1.0], [-1.0, 1.0]])
     slope = np.array([-6.0, -3.0]) / np.hypot(3.0, 6.0)  # across the way from (0, 0) to (-3, 6)
-    np.testing.assert_allclose(lines(turned, 2.0), np.array([-2.0, 3.0]) + np.array([-slope, slope]))
+    np.testing.assert_allclose(lines(turned, 2.0), np.array([-1.0, 2.0]) + np.array([-slope, slope]))
+
+
+def test_a_crack_is_drawn_between_its_disks_wherever_it_broke():
+    moved = np.array([[5.0, -40.0], [5.0, -40.0], [0.0, 0.0]])
+    np.testing.assert_allclose(lines(moved, place=(6.0, -20.0)), [[6.0, -41.0], [6.0, -39.0]])
+
+
+def test_a_frame_has_all_disks_that_are_not_far_from_the_body():
+    """201 disks slide by 30 m in a row; four that fall for 100 m are out of the frame, though 2 % of all."""
+    start = np.stack([np.arange(201.0), np.zeros(201)], axis=1)
+    moved = np.tile([30.0, 0.0], (201, 1))
+    moved[::60] = 0.0, -150.0
+    window = framed(Window.around(start, np.full(201, 0.5)), start, np.full(201, 0.5), [moved])
+    assert window.extent == (-0.5, 229.5 + 1.0, -0.5, 0.5)
 
 
 @pytest.mark.parametrize(("opening", "is_drawn"), [(0.85, True), (0.95, False)])

@@ -99,15 +99,18 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke_above_the_disks(crack
         cracks = file["cracks"]
         past = cracks["time"][:] <= file[f"snapshots/{snapshot:04d}"].attrs["time"]
         for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
-            expected = cracks["position"][past & (cracks["shear"][:] == shear)]
+            first, second = cracks["particles"][:][past & (cracks["shear"][:] == shear)].T
+            position, radius = (file["particles"][name][:] for name in ("position", "radius"))
+            to_contact = (radius[first] / (radius[first] + radius[second]))[:, None]
+            expected = position[first] + to_contact * (position[second] - position[first])
             lines = np.array(marks[f"{label} ({len(expected)})"].get_segments())
             np.testing.assert_allclose(lines.mean(axis=1), expected, rtol=1e-12)
             assert len(expected) > 0
 
 
-def test_colours_span_the_disks_but_for_few_that_are_beyond_twice_their_scale(tmp_path):
+def test_colours_span_the_disks_but_for_few_that_are_a_quarter_beyond_their_scale(tmp_path):
     """One thrown disk of 800 has a colour beyond the bar, whose ends say so."""
-    for thrown, end, extend in ((570.0, 2.0, "both"), (3.0, 3.0, "neither")):
+    for thrown, end, extend in ((570.0, 2.0, "both"), (2.4, 2.4, "neither")):
         path = block(tmp_path / "run.h5", 40, 20, lambda x: np.where(x > 20.0, 2.0, -1.0))
         with h5py.File(path, "a") as file:
             file["snapshots/0000/velocity"][17, 0] = thrown

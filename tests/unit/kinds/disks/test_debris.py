@@ -33,7 +33,7 @@ def test_the_run_ends_at_rest_and_says_what_fell(dropped: Path) -> None:
     assert found["kinetic"] < 1e-3 * found["fall"]
     assert (found["left"], found["right"]) == (None, None)
     largest = np.sqrt(4.0 * 4.0 / np.pi)  # of 2 m × 2 m
-    pieces = {"count": 1, "largest": largest, "share": 1.0, "singles": 0.0}
+    pieces = {"count": 1, "largest": largest, "share": 1.0, "singles": 0.0, "d50": largest, "d80": largest}
     assert found["fragments"] == pytest.approx(pieces, rel=1e-12)
     assert end_in_words(summary)[0].startswith("ended at ")
     moved, pieces = debris_in_words(found)
