@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from dembound.plot.style import COLOURS, DASHES, MARKERS, REFERENCE, finished, new_figure, styled
 from dembound.results.results import Results
 
-ROOM = 1.15
-"""Height of a panel with a legend inside over that of its lines."""
+ROOM = 0.2
+"""Height of a legend inside a panel, over that of the lines."""
 
 
 class Line(NamedTuple):
@@ -49,8 +49,10 @@ def overlay(title: str, panels: Sequence[tuple[str, Sequence[Line]]], x: str, y:
             panel.axhline(level, color=REFERENCE, linewidth=0.8, zorder=1)
         panel.set_title(name)
         if several:
-            panel.set_ylim(top=panel.get_ylim()[1] * ROOM)
             panel.legend(fontsize=8.0, loc="upper left", ncols=2 if len(lines) > 3 else 1)
+    if several:
+        low, high = axes[0, 0].get_ylim()
+        axes[0, 0].set_ylim(low, high + ROOM * (high - low))
     for panel in axes[-1]:
         panel.set_xlabel(x)
     for row in axes:

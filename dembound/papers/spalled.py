@@ -61,7 +61,8 @@ def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
     step = round(first_spall(run)["time"] / planned.time_step)
     simulation = Simulation(planned.scene, planned.time_step)
     simulation.run(step + 1)
-    return planned.scene.positions[:, 0], simulation.system.parts[0].bonds.damage(step)
+    bar: Any = simulation.system.parts[0]
+    return planned.scene.positions[:, 0], bar.bonds.damage(step)
 
 
 def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]], limits: tuple[float, float]) -> None:
@@ -117,7 +118,8 @@ def errors(run: Path, monitor: str = "middle") -> list[float]:
 def expected_spall(case: BarCase) -> tuple[float, float]:
     """Place (m) and time (s) of the first spall by the closed form."""
     (load,), bar = case.load, case.bar
-    pulse, strength = case.wave[load.wave], bar.modulus * bar.breaking_stretch
+    pulse: Any = case.wave[load.wave]
+    strength = bar.modulus * bar.breaking_stretch
     return triangle_spall(bar.length, bar.speed, pulse.rise, pulse.fall, load.pressure, strength)
 
 
