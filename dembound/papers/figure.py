@@ -40,7 +40,7 @@ class Figure:
     Attributes
     ----------
     title : what it shows; chinese : the same in the paper's language.
-    seconds : CPU time of its runs, s on one core, once kernels are compiled.
+    seconds : CPU time of the command for it alone, s on one core, once kernels are compiled.
     draw : its picture, and the rows of its numbers.
     ratios : the ratios of radii λ of its packings of pattern B, as printed; none if it has no such packing.
     adjustable : whether keys of its cases can be changed; not those of a figure without cases.

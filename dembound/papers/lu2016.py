@@ -259,13 +259,13 @@ def _draw_12(runs: Sequence[tuple[str, Path]]) -> Picture:
 PAPER = Paper(
     "Lu Z. T., Wang Z. L. (2016), Journal of Harbin Institute of Technology 48(2), 131–137",
     {
-        "5": Figure("dispersion", "频散特性影响因素", 0, figure_5, adjustable=False),
-        "6": Figure("the pulse", "冲击荷载时程曲线", 0, figure_6),
-        "7": Figure("stress in the middle of the bar", "杆中点应力时程曲线", 1, figure_7),
-        "8": Figure("spalls, and table 1", "层裂现象 PD 法模拟, 表 1", 5, figure_8),
-        "10": Figure("attenuation from a weak pulse", "应力波衰减过程", 1, figure_10),
-        "11": Figure("strength from a strong pulse", "自由面附近应力波形", 1, figure_11),
-        "12": Figure("damage in the test, and table 2", "岩杆断裂时损伤分布, 表 2", 1, figure_12),
+        "5": Figure("dispersion", "频散特性影响因素", 4, figure_5, adjustable=False),
+        "6": Figure("the pulse", "冲击荷载时程曲线", 4, figure_6),
+        "7": Figure("stress in the middle of the bar", "杆中点应力时程曲线", 18, figure_7),
+        "8": Figure("spalls, and table 1", "层裂现象 PD 法模拟, 表 1", 15, figure_8),
+        "10": Figure("attenuation from a weak pulse", "应力波衰减过程", 6, figure_10),
+        "11": Figure("strength from a strong pulse", "自由面附近应力波形", 6, figure_11),
+        "12": Figure("damage in the test, and table 2", "岩杆断裂时损伤分布, 表 2", 7, figure_12),
     },
     "figures 1 to 4 and 9 are sketches and photographs",
 )

@@ -235,37 +235,37 @@ ONE, TWO = (1.5,), (1.5, 2.0)
 PAPER = Paper(
     "Zhou X. T., Sheng Q., Cui Z., Leng X. L., Fu X. D., Ma Y. L. N. (2018), Rock and Soil Mechanics 39(7), 2671–2681",
     {
-        "2": Figure("two packings", "两种颗粒单元分布模式", 1, partial(packings, number="2", names="AB"), ONE),
-        "3": Figure("a pulse in the long bar, β = 1", "各监测点 X 方向速率", 30, figure_3, ONE),
+        "2": Figure("two packings", "两种颗粒单元分布模式", 7, partial(packings, number="2", names="AB"), ONE),
+        "3": Figure("a pulse in the long bar, β = 1", "各监测点 X 方向速率", 32, figure_3, ONE),
         "6": Figure(
             "ratio iteration from β = 0.5 and 2",
             "右侧黏性边界 P5 速度峰值随迭代次数变化",
-            40,
+            41,
             partial(iterations, number="6", names="B", starts=(0.5, 2.0), printed="10, 0.500 m/s"),
             ONE,
         ),
         "7": Figure(
-            "P4 by pass from β = 0.5", "β 初值 0.5, P4 速度时程", 90, partial(passes, number="7", start=0.5), ONE
+            "P4 by pass from β = 0.5", "β 初值 0.5, P4 速度时程", 139, partial(passes, number="7", start=0.5), ONE
         ),
         "8": Figure(
-            "P4 by pass from β = 2", "β 初值 2.0, P4 速度时程", 90, partial(passes, number="8", start=2.0), ONE
+            "P4 by pass from β = 2", "β 初值 2.0, P4 速度时程", 139, partial(passes, number="8", start=2.0), ONE
         ),
-        "9": Figure("a brick", "基块 (pbrick)", 1, brick, ONE),
+        "9": Figure("a brick", "基块 (pbrick)", 4, brick, ONE),
         "10": Figure(
-            "packings at the right side", "右侧边界颗粒分布", 1, partial(packings, number="10", names="ABC"), TWO
+            "packings at the right side", "右侧边界颗粒分布", 10, partial(packings, number="10", names="ABC"), TWO
         ),
-        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 60, figure_11, TWO),
-        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 60, figure_12, TWO),
+        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 75, figure_11, TWO),
+        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 75, figure_12, TWO),
         "13": Figure(
             "ratio iteration of all patterns from β = 1",
             "颗粒分布模式对比值迭代过程影响",
-            60,
+            40,
             partial(iterations, number="13", names="ABC", starts=(1.0,), printed="9, 0.500 m/s"),
             TWO,
         ),
-        "14": Figure("external source", "外源波动, 各监测点位移时程", 60, figure_14, ONE),
-        "16": Figure("Lamb's problem", "Lamb 问题, 监测点竖向位移时程", 60, figure_16),
-        "18": Figure("a tunnel under an SV wave", "隧洞 P1, P2 水平速率时程", 60, figure_18),
+        "14": Figure("external source", "外源波动, 各监测点位移时程", 64, figure_14, ONE),
+        "16": Figure("Lamb's problem", "Lamb 问题, 监测点竖向位移时程", 30, figure_16),
+        "18": Figure("a tunnel under an SV wave", "隧洞 P1, P2 水平速率时程", 23, figure_18),
     },
     "figures 1, 4, 5, 15 and 17 are sketches",
 )

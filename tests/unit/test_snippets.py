@@ -12,6 +12,7 @@ import io
 import re
 import shlex
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +102,6 @@ def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_c
     assert not [code for code in codes if not any(code in text for text in texts)]
 
 
-PAIR = re.compile(r"^```sh\n(?P<commands>(?:(?!```).*\n)+)```\n+```text\n(?P<output>.*?)^```", re.DOTALL | re.MULTILINE)
 CONSOLE = re.compile(r"^```console\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
 
 QUICK = (["check"], ["cases"], ["paper", "lu2016", "--figure", "6"], ["paper", "zhou2018"])
@@ -116,9 +116,10 @@ def shown() -> list[tuple[str, list[str], str]]:
     found = []
     for page in [*PAGES, ROOT / "README.zh.md"]:
         text, name = page.read_text(), page.relative_to(ROOT).as_posix()
-        pairs = [
-            (arguments, pair["output"]) for pair in PAIR.finditer(text) for arguments in commands(pair["commands"])
-        ]
+        pairs = []
+        for one, other in pairwise(BLOCK.finditer(text)):
+            if (one["language"], other["language"], text[one.end() : other.start()].strip()) == ("sh", "text", ""):
+                pairs += [(arguments, other["text"]) for arguments in commands(one["text"])]
         for block in CONSOLE.finditer(text):
             for part in re.split(r"^\$ dembound ", block["text"], flags=re.MULTILINE)[1:]:
                 command, _, output = part.partition("\n")
