@@ -254,8 +254,8 @@ PAPER = Paper(
         "10": Figure(
             "packings at the right side", "右侧边界颗粒分布", 10, partial(packings, number="10", names="ABC"), TWO
         ),
-        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 75, figure_11, TWO),
-        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 75, figure_12, TWO),
+        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 100, figure_11, TWO),
+        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 100, figure_12, TWO),
         "13": Figure(
             "ratio iteration of all patterns from β = 1",
             "颗粒分布模式对比值迭代过程影响",
