@@ -37,7 +37,9 @@ def paper(
     title: PictureTitle = None,
     threads: Threads = None,
 ) -> None:
-    """List the figures of a paper, or draw some from their own runs, with their numbers beside the printed ones.
+    """List the figures of a paper, or draw some as printed.
+
+    A figure makes its own runs, and its numbers are printed beside those of the paper.
 
     Writes figure_NUMBER.png and figure_NUMBER.md. --set changes a key of all cases of a figure, such as the length of
     the pulse, wave.pulse.period=0.25.
