@@ -9,33 +9,7 @@ d'Alembert's solution in the root mean square over a passage, L/c, in parts of t
 import sys
 from pathlib import Path
 
-import numpy as np
-from records import case_of, history, markdown, name_of
-
-from dembound.casefile.bar import BarCase
-from dembound.exact import bar_stress
-
-
-def exact_stress(case: BarCase, place: float, time: np.ndarray) -> np.ndarray:
-    """Stress (k,) Pa of d'Alembert's solution at a place (m) and times (k,) s."""
-    (load,) = case.load
-    pulse = case.wave[load.wave].velocity
-    return bar_stress(place, time, lambda t: load.pressure * pulse(t), case.bar.length, case.bar.speed)
-
-
-def errors(run: Path, monitor: str = "middle") -> list[float]:
-    """Errors of each whole passage of a run's pulse through the middle of the bar."""
-    case = case_of(run)
-    time, stress, place = history(run, monitor)
-    exact = exact_stress(case, place, time)
-    wait = case.bar.length / case.bar.speed  # from one passage to the next
-    begin = place / case.bar.speed + 0.5 * (case.wave[case.load[0].wave].duration() - wait)
-    found = []
-    for passage in range(int((time[-1] - begin) / wait)):
-        inside = (time >= begin + passage * wait) & (time < begin + (passage + 1) * wait)
-        error, pulse = (np.linalg.norm(values[inside]) for values in (stress - exact, exact))
-        found.append(float(error / pulse))
-    return found
+from dembound.papers.spalled import case_of, errors, history, markdown, name_of
 
 
 def main() -> None:

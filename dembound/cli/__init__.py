@@ -13,6 +13,7 @@ from dembound.cli import (
     exact,
     gauge,
     material,
+    paper,
     results,
     showing,
     starting,

@@ -37,7 +37,7 @@ MORE = "More"
 
 ORDER = (
     *("new", "check", "run", "advise", "plot", "report", "calibrate", "chart", "sweep", "test"),
-    *("cases", "schema", "material", "packing", "boundary", "stability", "dispersion", "exact"),
+    *("cases", "paper", "schema", "material", "packing", "boundary", "stability", "dispersion", "exact"),
     *("resume", "rerun", "library", "respond"),
     *("estimate", "compare", "signals", "movie", "wave", "gauge", "hopkinson", "cache"),
 )

@@ -1,6 +1,10 @@
 """Examples in the documents are valid: cases are accepted, commands exist with their options and arguments.
 
 A TOML block is a whole case if it has a table ``[run]``, else a fragment. A translation has the code of its page.
+
+Outputs that pages show, in English and in Chinese, are those that the commands print today. Compared are blocks
+``console``, and blocks ``text`` right after one of ``sh``, of commands that need no run; ``…`` stands for anything, and
+a page may leave lines out.
 """
 
 import contextlib
@@ -8,6 +12,7 @@ import io
 import re
 import shlex
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -95,3 +100,53 @@ def test_the_code_of_a_chinese_page_is_that_of_the_english_one_or_of_a_shipped_c
     texts = [path.read_text() for path in originals if path.is_file()]
     codes = [*blocks(page, "toml"), *blocks(page, "python")]
     assert not [code for code in codes if not any(code in text for text in texts)]
+
+
+CONSOLE = re.compile(r"^```console\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
+
+QUICK = (["check"], ["paper", "lu2016", "--figure", "6"], ["paper", "zhou2018"])
+"""The beginnings of commands that need no run."""
+
+CASES = {"bar.toml": ["new", "bar.toml"], "first_tunnel.toml": ["cases", "copy", "first_tunnel"]}
+"""Commands that write the cases of the pages."""
+
+
+def shown() -> list[tuple[str, list[str], str]]:
+    """Page, arguments of a quick command, and the output that the page shows."""
+    found = []
+    for page in [*PAGES, ROOT / "README.zh.md"]:
+        text, name = page.read_text(), page.relative_to(ROOT).as_posix()
+        pairs = []
+        for one, other in pairwise(BLOCK.finditer(text)):
+            if (one["language"], other["language"], text[one.end() : other.start()].strip()) == ("sh", "text", ""):
+                pairs += [(arguments, other["text"]) for arguments in [*commands(one["text"])][-1:]]
+        for block in CONSOLE.finditer(text):
+            for part in re.split(r"^\$ dembound ", block["text"], flags=re.MULTILINE)[1:]:
+                command, _, output = part.partition("\n")
+                pairs.append((shlex.split(command, comments=True), output))
+        found += [(name, *pair) for pair in pairs if any(pair[0][: len(quick)] == quick for quick in QUICK)]
+    return found
+
+
+SHOWN = shown()
+
+
+def test_both_languages_show_outputs() -> None:
+    assert {"README.md", "docs/tasks/papers.md", "docs/zh/papers.md", "docs/zh/first_wave.md"} <= {
+        page for page, *_ in SHOWN
+    }
+
+
+@pytest.mark.parametrize(
+    ("page", "arguments", "output"), SHOWN, ids=[" ".join([page, *words]) for page, words, _ in SHOWN]
+)
+def test_outputs_on_pages_are_those_of_today(page, arguments, output, dembound, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, writes in CASES.items():
+        if name in arguments:
+            assert dembound(*writes).code == 0
+    answer = dembound(*arguments)
+    assert answer.code == 0
+    printed = " ".join(answer.out.split())
+    pieces = [" ".join(piece.split()) for line in output.splitlines() for piece in line.split("…")]
+    assert not [piece for piece in pieces if piece not in printed]

@@ -1,21 +1,23 @@
-"""Reading of results of `dembound run` for the scripts of this folder, and their presentation."""
+"""Runs of bars that break: what is read from their records, and how damage at the first spall is drawn."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 
 from dembound.casefile.bar import BarCase
-from dembound.exact import triangle_spall
-from dembound.kinds import loads
+from dembound.casefile.model import as_kind
+from dembound.errors import RunError
+from dembound.exact import bar_stress, triangle_spall
 from dembound.laws.peridynamic import CRACKED
 from dembound.motion.simulation import Simulation
 from dembound.plot.style import COLOURS, REFERENCE
+from dembound.results.reader import open_record
+from dembound.results.summary import read_summary
 from dembound.running import plan
+from dembound.running.recorded import recorded_case
 
 MILLI, MEGA = 1e-3, 1e6
 
@@ -23,34 +25,32 @@ ROW = 1.25
 """Distance from one row of damage to the next; damage itself is 1 high."""
 
 
-def summary_of(run: Path) -> dict[str, Any]:
-    """A run's summary."""
-    return json.loads((run / "summary.json").read_text())
-
-
 def first_spall(run: Path) -> dict[str, Any]:
-    """The first spall of a run: `time` (s) and `start`, the range of its cracked nodes (m)."""
-    return summary_of(run)["spalls"][0]
+    """The first spall of a run: `time` (s) and `start`, the range of its cracked nodes (m).
+
+    Raises RunError if there is none.
+    """
+    found = read_summary(run)["spalls"]
+    if not found:
+        raise RunError(f"{run}: the bar did not break, so there is no spall to draw")
+    return found[0]
 
 
 def case_of(run: Path) -> BarCase:
     """The case that was run."""
-    with h5py.File(run / "run.h5") as file:
-        case = loads(file.attrs["case"], name=file.attrs["name"])
-    assert isinstance(case, BarCase)
-    return case
+    return as_kind(recorded_case(run / "run.h5"), BarCase, "must be of a bar", str(run))
 
 
 def history(run: Path, monitor: str) -> tuple[np.ndarray, np.ndarray, float]:
     """Times (k,) s and stresses (k,) Pa at a monitor, and where it stands, m."""
-    with h5py.File(run / "run.h5") as file:
+    with open_record(run / "run.h5") as file:
         group = file[f"histories/{monitor}"]
         return group["time"][:], group["stress"][:], float(group.attrs["position"][0])
 
 
 def stress_along(run: Path, time: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Places (n,) m and stresses (n,) Pa at the snapshot nearest to a time, and its own time, s."""
-    with h5py.File(run / "run.h5") as file:
+    with open_record(run / "run.h5") as file:
         nearest = min(file["snapshots"].values(), key=lambda group: abs(group.attrs["time"] - time))
         return file["particles/position"][:, 0], nearest["stress"][:], float(nearest.attrs["time"])
 
@@ -61,7 +61,8 @@ def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
     step = round(first_spall(run)["time"] / planned.time_step)
     simulation = Simulation(planned.scene, planned.time_step)
     simulation.run(step + 1)
-    return planned.scene.positions[:, 0], simulation.system.parts[0].bonds.damage(step)
+    bar: Any = simulation.system.parts[0]
+    return planned.scene.positions[:, 0], bar.bonds.damage(step)
 
 
 def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]], limits: tuple[float, float]) -> None:
@@ -88,10 +89,37 @@ def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]], limits: tuple[flo
     panel.set_xlabel("x (m)")
 
 
+def exact_stress(case: BarCase, place: float, time: np.ndarray) -> np.ndarray:
+    """Stress (k,) Pa of d'Alembert's solution at a place (m) and times (k,) s."""
+    (load,) = case.load
+    pulse = case.wave[load.wave].velocity
+    return bar_stress(place, time, lambda t: load.pressure * pulse(t), case.bar.length, case.bar.speed)
+
+
+def errors(run: Path, monitor: str = "middle") -> list[float]:
+    """Errors of each whole passage of a run's pulse through the middle of an unbreakable bar.
+
+    An error is the difference between the stress and d'Alembert's solution in the root mean square over a passage, L/c,
+    in parts of that of the pulse.
+    """
+    case = case_of(run)
+    time, stress, place = history(run, monitor)
+    exact = exact_stress(case, place, time)
+    wait = case.bar.length / case.bar.speed  # from one passage to the next
+    begin = place / case.bar.speed + 0.5 * (case.wave[case.load[0].wave].duration() - wait)
+    found = []
+    for passage in range(int((time[-1] - begin) / wait)):
+        inside = (time >= begin + passage * wait) & (time < begin + (passage + 1) * wait)
+        error, pulse = (np.linalg.norm(values[inside]) for values in (stress - exact, exact))
+        found.append(float(error / pulse))
+    return found
+
+
 def expected_spall(case: BarCase) -> tuple[float, float]:
     """Place (m) and time (s) of the first spall by the closed form."""
     (load,), bar = case.load, case.bar
-    pulse, strength = case.wave[load.wave], bar.modulus * bar.breaking_stretch
+    pulse: Any = case.wave[load.wave]
+    strength = bar.modulus * bar.breaking_stretch
     return triangle_spall(bar.length, bar.speed, pulse.rise, pulse.fall, load.pressure, strength)
 
 
