@@ -3,9 +3,9 @@
     python cases/exact/canyon.py results/canyon_p results/canyon_sv     (half a minute; writes canyons.png)
 
 Wong (1982, Bull. Seism. Soc. Am. 72, 1167-1183) and Kawase (1988, ibid. 78, 1415-1437) draw these amplitudes over x/a
-at a frequency η = ωa/(πc_s), as shares of the incident wave, for ν = 1/3. Here they are computed, for ν = 0 as that of
-the disks and not taken from print: by indirect boundary elements with the full space's Green function (Sánchez-Sesma & Campillo 1991, ibid. 81, 2234-2253), on the canyon and
-on the surface beside it.
+at a frequency η = ωa/(πc_s), as shares of the incident wave, for ν = 1/3. Here they are computed for ν = 0, that of the
+disks, and not taken from print: by indirect boundary elements with the full space's Green function, on the canyon and
+on the surface beside it (Sánchez-Sesma & Campillo 1991, ibid. 81, 2234-2253).
 """
 
 import sys
