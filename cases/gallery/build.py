@@ -44,7 +44,7 @@ TOPICS = {
     "Waves along a bar of disks": ("p_pulse", "p_and_s", "packings"),
     "What artificial sides return": ("calibration", "beta_sweep", "sides", "side_reflection", "error_chart"),
     "Ground under waves from below": ("free_field", "earthquake", "resonance", "tunnel", "two_tunnels"),
-    "Waves at an angle, and surfaces": ("oblique_sv", "canyon", "slope", "rayleigh"),
+    "Waves at an angle, and surfaces": ("oblique_sv", "canyon", "canyon_p", "canyon_sv", "slope", "rayleigh"),
     "Slopes and dams under waves from below": ("step_sv", "landslide_quake", "empty_dam"),
     "Sources and exact solutions": ("point_source", "lamb", "blast", "blast_cracks"),
     "Weight, stress and contacts": ("excavation", "in_situ_stress", "force_chains", "sliding", "collapse"),
