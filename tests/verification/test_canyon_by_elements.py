@@ -22,7 +22,7 @@ def test_greens_function_is_an_elastic_motion_of_a_unit_force() -> None:
 
 @pytest.mark.parametrize(("kind", "axis"), [("p", 2), ("sv", 1)])
 def test_a_canyon_much_smaller_than_the_waves_moves_as_level_ground(kind: str, axis: int) -> None:
-    """Within (ωa/c_s)² = 1.6 % times a logarithm, for S waves of 50 a: 3 %, and the other component 3 % of the motion."""
+    """Within (ωa/c_s)² = 1.6 % times a logarithm, for S waves of 50 a: 3 %, the other component 3 % of it."""
     found = canyon.amplitudes(kind, 2.0, eta=0.04, size=0.25, reach=4.0)
     middle = np.abs(found[0]) < 1.5
     np.testing.assert_allclose(found[axis, middle], 2.0, rtol=0.03)
