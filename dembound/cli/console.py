@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 import textwrap
 import time
@@ -13,7 +14,7 @@ from typing import Any
 
 import typer
 from rich import box
-from rich.console import Console
+from rich.console import Console, ConsoleDimensions
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -29,17 +30,41 @@ NARROWEST = 24
 """Characters in a line of names that are broken between words, at least."""
 
 
+WIDEST = 100_000
+"""Characters in a line where there is no terminal and no COLUMNS says how many: rows of tables have a line each."""
+
+
 class PlainConsole(Console):
     """Prints texts of users: nothing in them is markup, an emoji code or a command to the terminal."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(markup=False, emoji=False, highlight=False, soft_wrap=True, **options)
 
+    @property
+    def size(self) -> ConsoleDimensions:
+        """Characters in a line, and lines."""
+        if self.is_terminal or self._width is not None or "COLUMNS" in os.environ:
+            return super().size
+        return ConsoleDimensions(WIDEST, 25)
+
+    @size.setter
+    def size(self, new: tuple[int, int]) -> None:
+        self._width, self._height = new
+
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print; texts are broken between words on a terminal, and elsewhere have one line each, for scripts."""
-        if self.is_terminal and all(isinstance(each, str) for each in objects):
-            options.setdefault("soft_wrap", False)
-        super().print(*objects, **options)
+        """Print; texts are broken between words on a terminal, and elsewhere have one line each, for scripts.
+
+        So have rows of tables there, without blanks at their ends.
+        """
+        if self.is_terminal or not any(isinstance(each, Table) for each in objects):
+            if self.is_terminal and all(isinstance(each, str) for each in objects):
+                options.setdefault("soft_wrap", False)
+            super().print(*objects, **options)
+            return
+        with self.capture() as padded:
+            super().print(*objects, **options)
+        for line in padded.get().splitlines():
+            super().print(line.rstrip(), soft_wrap=True)
 
     def render_str(self, text: str, **options: Any) -> Text:
         """The text of anything printed, also of cells and titles, in one line."""

@@ -58,6 +58,7 @@ def test_noise_round_disks_decays_for_long(pattern: str, fric: float) -> None:
     assert energies[-4:].max() < (2e-2 if pattern == "B" else 1e-4)
 
 
+@pytest.mark.slow
 def test_without_the_delay_it_grows() -> None:
     """The known failure of spectral elements with a layer of this kind: by ten orders of magnitude in 40,000 steps."""
     energies = kinetic(grid_alone(delay=0.0), evenly(40_000))

@@ -94,6 +94,7 @@ def test_of_slow_waves_more_returns_in_a_longer_run():
     hold(long, "right", 0.5)
 
 
+@pytest.mark.slow
 def test_a_bar_too_long_to_be_stepped_is_represented_by_a_shorter_one(monkeypatch):
     """As many ways along it: short waves disperse on a longer one, so the bound remains one, and within five times."""
     scene = build_bar(case(**tables(3, cells=600, nodes=3)))

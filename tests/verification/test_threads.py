@@ -146,7 +146,10 @@ def run_with(number: int, lab, name: str) -> dict[str, np.ndarray]:
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=pytest.mark.slow) if n.startswith("settled, layers") else n for n in SCENES]
+    [
+        pytest.param(n, marks=pytest.mark.slow) if n.startswith(("settled, layers", "damped by Q, disk by disk")) else n
+        for n in SCENES
+    ]
     + ["continuum", "layered continuum"],
 )
 def test_same_bits_of_motion_contacts_and_energies(lab, name, monkeypatch):

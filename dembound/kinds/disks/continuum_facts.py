@@ -125,7 +125,8 @@ def _elements(outside: Surroundings) -> str:
     width, height = (_from_to(sizes) for sizes in mesh.element_sizes.T)
     return (
         f"{outside.count:,} nodes in {len(mesh.elements):,} elements of order {mesh.order}, {width} m × "
-        f"{height} m, {absorbing:.0f} % of which absorb; {counted(len(outside.wall.element), 'tie')}"
+        f"{height} m, {absorbing:.0f} % of which absorb; joined to disks at "
+        f"{counted(len(outside.wall.element), 'place')}"
     )
 
 
@@ -197,8 +198,9 @@ def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     else:
         returned = f"at {angles}° they return at most {p} % of P and {s} % of S waves"
     return (
-        f"begin {begin} m beyond the sides and are {depth} m deep, {count}, R0 = "
-        f"{settings.absorption.reflection:.3g}; {returned}, the elements themselves about {percent(floor)}"
+        f"begin {begin} m beyond the sides and are {depth} m deep, {count}, and keep "
+        f"{percent(settings.absorption.reflection)} of P waves there and back; {returned}, the elements "
+        f"themselves about {percent(floor)}"
     )
 
 
@@ -281,7 +283,7 @@ def _poor_elements(scene: DiskScene, outside: Surroundings, keys: OutsideTable, 
             yield (
                 f"outside: elements of {side:.4g} m, the smallest useful ones beside these disks, return short waves, "
                 f"about {percent(error)} of the velocity of all that meets them, more than {asked}; the disks disperse "
-                "these waves, too"
+                "these waves, too: take smaller disks, or longer waves"
             )
         return
     if error > LEEWAY * keys.accuracy:

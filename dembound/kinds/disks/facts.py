@@ -202,7 +202,8 @@ def _side_fact(scene: DiskScene, side: str) -> str:
     words = [f"{text} beside {' and '.join(names)}" for text, names in alike.items()]
     return (
         f"{'; '.join(words) if len(words) > 1 else side_in_words(facts)}; {facts['particles']} particles{some}, "
-        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.3g}"
+        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, in all "
+        f"{facts['diameter_sum_ratio']:.3g} times the side's length"
         f"{_whole_cells(scene, side)}"
     )
 

@@ -96,6 +96,7 @@ def test_where_bonds_break_the_error_is_that_before() -> None:
     assert choice.holds
 
 
+@pytest.mark.slow
 def test_a_given_case_that_keeps_one_bound_in_less_time_than_a_search_is_taken() -> None:
     taken = advised(small(BAR), 0.6)
     assert taken.holds

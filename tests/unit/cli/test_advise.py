@@ -61,6 +61,7 @@ def test_a_case_is_written_with_the_lines_that_differ(dembound, case) -> None:
     assert len(new) <= 4
 
 
+@pytest.mark.slow
 def test_a_bound_that_nothing_holds_ends_with_the_best(dembound, case, tmp_path) -> None:
     keep = ("--error", "1%", "--keep", "packing", "--set", "boundary.right.beta_p=0.6")
     for command in ("run", "advise"):
@@ -133,6 +134,7 @@ def test_what_cannot_be_estimated_is_one_line(dembound, tmp_path):
         assert (answer.code, answer.err.splitlines()) == (2, said)
 
 
+@pytest.mark.slow
 def test_a_run_with_cracks_is_repeated_on_request(dembound, tmp_path):
     (tmp_path / "torn.toml").write_text(small_case(PUSHED, "torn", TORN).text)
     assert "bonds break: which ones" in dembound("run", "torn.toml", "--estimate").out

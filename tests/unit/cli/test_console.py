@@ -11,7 +11,7 @@ import pytest
 from rich.table import Table
 
 from dembound.cli.compiling import MESSAGE
-from dembound.cli.console import PlainConsole, prepare_streams
+from dembound.cli.console import PlainConsole, compact_table, prepare_streams
 from dembound.errors import HIDDEN, visible
 
 
@@ -95,3 +95,16 @@ def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
 
     assert printed() == f"{MESSAGE}\n"
     assert printed() == ""  # loaded
+
+
+@pytest.mark.parametrize(("is_terminal", "rows"), [(False, 1), (True, 3)])
+def test_rows_of_tables_have_a_line_each_where_there_is_no_terminal(is_terminal, rows, monkeypatch) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    file = io.StringIO()
+    console = PlainConsole(file=file, force_terminal=is_terminal, color_system=None)
+    table = compact_table(show_header=False)
+    table.add_row("sides", "word " * 40)
+    console.print(table)
+    lines = [line for line in file.getvalue().splitlines() if line.strip()]
+    assert len(lines) == rows
+    assert is_terminal or lines[0].endswith(" word")

@@ -83,6 +83,7 @@ def write_run(path) -> None:
             group.attrs["position"] = [1.0, 0.0]
 
 
+@pytest.mark.slow
 def test_a_picture_and_its_table_are_written(dembound, small_run, spalled_run, tmp_path):
     for options, head in (
         (("--show", "fourier", "--quantity", "acceleration", "--component", "both"), "frequency (Hz),"),

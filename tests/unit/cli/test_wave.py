@@ -95,6 +95,7 @@ duration = 10.0
 """
 
 
+@pytest.mark.slow
 def test_a_surface_record_is_taken_down_in_step(dembound, recorded, tmp_path) -> None:
     """Both waves begin together: S waves in an earlier time than P waves need would come out of step."""
     (tmp_path / "soil.toml").write_text(SOIL, encoding="utf-8")

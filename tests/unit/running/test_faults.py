@@ -194,6 +194,7 @@ def version_of_equal_length(found: re.Match) -> bytes:
     return found[1] + b"9" * (len(found[0]) - len(found[1]))
 
 
+@pytest.mark.slow
 def test_a_longer_run_that_ends_before_its_first_checkpoint_is_resumed(folder, tmp_path, monkeypatch) -> None:
     class Ended(job.Checkpoints):
         """Ends the run as a kill does, without a checkpoint."""

@@ -139,6 +139,7 @@ SPALLING_DISKS = {
 """A bar whose bonds break when the pulse comes back from its free end."""
 
 
+@pytest.mark.slow
 def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> None:
     laws = {"material.elastic_start": [True, False], "run.safety": [0.9, 0.3]}
     found, _ = charted(bar(SPALLING_DISKS), laws, repeats=1)

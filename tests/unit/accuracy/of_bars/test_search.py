@@ -105,6 +105,7 @@ def test_the_small_stress_beside_a_free_end_does_not_count() -> None:
     assert choice.choice.toml == []
 
 
+@pytest.mark.slow
 def test_of_a_bar_that_may_break_finite_differences_are_named_where_its_method_does_not_do() -> None:
     changes = {**SPREAD, "bar.strength": 1e9, "boundary.right": {"type": "viscous"}}
     case = with_changes(scene("finite differences, ν = 0.9"), changes)

@@ -184,6 +184,7 @@ def test_estimates_of_a_column_are_near_its_errors_beside_the_exact_motion() -> 
         assert error / within < np.linalg.norm(parts) < within * error
 
 
+@pytest.mark.slow
 def test_larger_disks_have_the_layers_of_the_packing_where_sides_have_moved_them() -> None:
     scene = build(small(COLUMN))
     larger = coarser(scene.case, scene, 1e-4, 0.6).case

@@ -231,6 +231,7 @@ def test_larger_disks_that_fill_the_ground_end_at_its_free_surface():
     assert not [*larger.side("bottom").problems("bottom", {"boundary": larger.boundary, "load": ()})]
 
 
+@pytest.mark.slow
 def test_sides_that_end_at_another_height_in_larger_disks_have_other_shares_of_layers():
     """Ground of two heights, 12 and 7.5 m in disks of 0.5 m, of 1.5 m 12 and 7.5 or 9 m, on rock up to 4 m."""
     beside = around({"type": "free_field"}, "left", "right") | {"bottom": {"type": "viscous_input", "wave_s": "pulse"}}

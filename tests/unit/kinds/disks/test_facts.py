@@ -138,11 +138,13 @@ def test_facts_are_those_of_the_continuum(case) -> None:
     facts = facts_beyond(case, **{"outside.element": 10.0})
 
     # 12 × 6 elements less 4 × 2; (4·12 + 1) × (4·6 + 1) nodes less 15 × 8 inside the box, whose top is the surface
-    assert facts["continuum"] == ("1,105 nodes in 64 elements of order 4, 10 m × 10 m, 84 % of which absorb; 80 ties")
+    assert facts["continuum"] == (
+        "1,105 nodes in 64 elements of order 4, 10 m × 10 m, 84 % of which absorb; joined to disks at 80 places"
+    )
     # 2.625/T; 707.1/13.1 m
     assert facts["continuum waves"].startswith("21.5 nodes in the shortest wavelength, 53.9 m (0.1 % of the energy ")
     assert facts["absorbing layers"].startswith(
-        "begin 10 m beyond the sides and are 30 m deep, 3 elements, R0 = 0.0001"
+        "begin 10 m beyond the sides and are 30 m deep, 3 elements, and keep 0.01 % of P waves"
     )
     assert "elements themselves about 0.04 %" in facts["absorbing layers"]
 
@@ -202,7 +204,10 @@ def test_a_margin_too_small_below_the_surface(case) -> None:
 def test_layers_of_strongly_anisotropic_ground(case) -> None:
     """They return more, which is said, and no formula says how much; one lattice below others is enough."""
     shear = {"material.kratio": 0.1, "material.pb_kratio": 0.1}
-    assert ", 3 elements, R0 = 0.0001; they stretch both axes, " in facts_beyond(case, **shear)["absorbing layers"]
+    assert (
+        ", 3 elements, and keep 0.01 % of P waves there and back; they stretch both axes, "
+        in facts_beyond(case, **shear)["absorbing layers"]
+    )
     (line,) = warnings_of(case, **shear)
     assert "those it needs return up to about 3 % of the motion, more than outside.accuracy = 0.1 %, and" in line
     assert warnings_of(case, **shear, **{"outside.accuracy": 0.04}) == []
