@@ -26,6 +26,7 @@ from dembound.disks.stepping.part import DiskPart, FreeFieldSeam
 from dembound.disks.stepping.walls import Touching
 from dembound.disks.surroundings.continuum import Surroundings
 from dembound.disks.surroundings.jump import nodes_on_slit
+from dembound.errors import RecordError
 from dembound.kernels.contacts import UPDATED
 from dembound.kernels.tables.contacts import LaneRows
 from dembound.kernels.tables.motion import Repeats, WallTies
@@ -192,13 +193,20 @@ def walls(scene: DiskBody) -> list[Tie]:
 
 
 def joint_ties(scene: DiskBody, start: Start | None, time_step: float) -> list[JointTie]:
-    """The joints of a scene, with the history of the body from which it starts, or as built."""
+    """The joints of a scene, with the history of the body from which it starts, or as built.
+
+    Raises RecordError for a body that another version of dembound has settled.
+    """
     gives = scene.moves / np.stack([scene.mass, scene.mass, scene.inertia])
     ties = []
     for faces in merged(scene.faces):
         tie = JointTie(faces, scene.assembly.positions, scene.ground, gives, scene.layout, time_step, scene.at_rest)
         if start is not None and start.joints:
-            tie.go_on_from(arrays_of_owner(start.joints, tie.name))
+            try:
+                tie.go_on_from(arrays_of_owner(start.joints, tie.name))
+            except (KeyError, ValueError) as error:
+                reason = f"the settled body is not of this version of dembound ({error}); run the case anew"
+                raise RecordError([reason]) from None
         ties.append(tie)
     return ties
 

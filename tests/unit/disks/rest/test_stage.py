@@ -13,8 +13,9 @@ from dembound.disks.rest.loading import LEAST, LOOK, Loading
 from dembound.disks.rest.stage import require_stages, settle
 from dembound.disks.rest.static_scene import StaticScene
 from dembound.disks.scene import build
+from dembound.disks.stepping.scene_parts import joint_ties
 from dembound.disks.stepping.system import DiskSystem
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError, RecordError, RunError
 from dembound.kernels.contacts import TENSION
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
@@ -142,6 +143,16 @@ def test_a_stage_in_which_a_joint_slides_names_it(bar) -> None:
     body = {"packing.size": [4.0, 2.0], "joint": [joint], "load": loads, "motion.held": ["rotation"]}
     with pytest.raises(StalledError, match=r"broken bonds: 0; joint bedding slides, so far by up to [\d.]+ m\n"):
         settle(scene(bar, static={"max_steps": LOADED, "boundary": {"bottom": FIXED}}, **body))
+
+
+def test_a_body_with_joints_that_another_version_has_settled_is_refused_in_one_line(bar) -> None:
+    joint = {"name": "bedding", "points": [[-1.0, 1.0], [5.0, 1.0]], "kn": 1e8, "ks": 1e8, "fric": 0.1}
+    body = scene(
+        bar, **WEIGHT, **{"packing.size": [4.0, 2.0], "joint": [joint]}, static={"boundary": {"bottom": FIXED}}
+    )
+    joints = {"joint_bedding/counts": np.zeros(4, dtype=np.int64)}
+    with pytest.raises(RecordError, match=r"^the settled body is not of this version of dembound \(.*\); run the case"):
+        joint_ties(body, SimpleNamespace(joints=joints), 1e-4)
 
 
 def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to_over_the_pairs_that_act(bar) -> None:
