@@ -192,9 +192,7 @@ def _layers(outside: Surroundings, signals: Sequence[Signal]) -> str:
     p, s = (", ".join(f"{100.0 * each:.2g}" for each in returned) for returned in _reflections(outside, signals))
     floor = sizing.layer_error(settings.order, settings.layers)
     if outside.body.is_stretched_along:
-        returned = (
-            f"they stretch both axes, as the ground is strongly anisotropic, and return {STRETCHED} of the motion"
-        )
+        returned = f"they stretch both axes, as the ground is very anisotropic, and return {STRETCHED} of the motion"
     else:
         returned = f"at {angles}° they return at most {p} % of P and {s} % of S waves"
     return (
