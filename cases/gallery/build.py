@@ -191,7 +191,7 @@ def measure(example: Example) -> Measured:
         results = Path(example.commands[-1].removeprefix("dembound estimate "))
         error, summary = predicted(results), dembound.Results(results).summary
     pixels = np.rint(np.vstack([fitted(figure) for figure in figures]) / SHADES) * SHADES
-    picture = Image.fromarray(np.minimum(pixels, 255).astype(np.uint8))
+    picture = Image.fromarray(np.minimum(pixels, 255).astype(np.uint8)).quantize(256, dither=Image.Dither.NONE)
     picture.save(DOCS / "pictures" / f"gallery_{example.name}.png", optimize=True)
     size = f"{summary['particles']:,} disks" if "particles" in summary else f"{summary['nodes']:,} nodes"
     seconds = sum(summary["seconds"][section] for section in RUNS)
