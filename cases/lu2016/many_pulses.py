@@ -17,7 +17,8 @@ from dembound.bar.fracture import spalls
 from dembound.casefile.bar import BarCase
 from dembound.kinds import with_changes
 from dembound.motion.simulation import Simulation
-from dembound.papers.spalled import MILLI, case_of, expected_spall, markdown, name_of
+from dembound.papers.figure import markdown
+from dembound.papers.spalled import MILLI, case_of, expected_spall, name_of
 from dembound.running import plan
 
 PRESSURES, RISES = np.linspace(20e6, 40e6, 9), (0.02e-3, 0.03e-3, 0.05e-3, 0.08e-3)

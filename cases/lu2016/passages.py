@@ -9,7 +9,8 @@ d'Alembert's solution in the root mean square over a passage, L/c, in parts of t
 import sys
 from pathlib import Path
 
-from dembound.papers.spalled import case_of, errors, history, markdown, name_of
+from dembound.papers.figure import markdown
+from dembound.papers.spalled import case_of, errors, history, name_of
 
 
 def main() -> None:

@@ -7,7 +7,7 @@ set -euo pipefail
 python3 -c 'import dembound' # ends here, before anything is run, where this is not the Python of dembound
 cases=$(cd "$(dirname "$0")" && pwd)
 results=${1:-results/lu2016}
-mkdir -p "$results/figures"
+mkdir -p "$results"
 
 echo "== Figures 6, 7: finite differences and horizons; coarser; coarser under a longer pulse"
 dembound paper lu2016 --figure 6 --figure 7 --output "$results"

@@ -16,7 +16,8 @@ import numpy as np
 
 from dembound.casefile.bar import BarCase
 from dembound.motion.simulation import Simulation
-from dembound.papers.spalled import MILLI, case_of, expected_spall, first_spall, in_millimetres, markdown, name_of
+from dembound.papers.figure import markdown
+from dembound.papers.spalled import MILLI, case_of, expected_spall, first_spall, in_millimetres, name_of
 from dembound.running import plan
 
 PRINTED = {"PD3": ("0.478", "2.00 (1)"), "PD1–PD3": ("0.466", "0.95 (0.475)"), "FDM–PD3": ("0.464", "0.53 (0.265)")}

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.papers.spalled import MEGA, MILLI, case_of, expected_spall, first_spall, in_millimetres, markdown
+from dembound.papers.figure import markdown
+from dembound.papers.spalled import MEGA, MILLI, case_of, expected_spall, first_spall, in_millimetres
 
 PRINTED = np.genfromtxt(Path(__file__).with_name("table1.csv"), delimiter=",", names=True, skip_header=1)
 """The seven rows of the paper."""

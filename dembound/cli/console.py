@@ -56,9 +56,9 @@ class PlainConsole(Console):
 
         So have rows of tables there, without blanks at their ends.
         """
+        if self.is_terminal and all(isinstance(each, str) for each in objects):
+            options.setdefault("soft_wrap", False)
         if self.is_terminal or not any(isinstance(each, Table) for each in objects):
-            if self.is_terminal and all(isinstance(each, str) for each in objects):
-                options.setdefault("soft_wrap", False)
             super().print(*objects, **options)
             return
         with self.capture() as padded:

@@ -56,6 +56,7 @@ def paper(
         raise CaseError(["--title: names one picture, there are several here"])
     prepare_computing(threads)
     from dembound.files import make_folder, write_text
+    from dembound.papers.figure import markdown
 
     folder = output or Path("results") / name
     make_folder(folder)
@@ -66,8 +67,7 @@ def paper(
         print_rows("; ".join([f"figure {number}: {figure.title}", *said]), [("number", "found", "printed"), *rows], 3)
         out.print("")
         leave(picture, folder / f"figure_{number}.png", title)
-        lines = ["| number | found | printed |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)]
-        write_text(folder / f"figure_{number}.md", "\n".join(lines) + "\n")
+        write_text(folder / f"figure_{number}.md", markdown(("number", "found", "printed"), rows) + "\n")
         out.print(f"wrote {folder / f'figure_{number}.md'}")
 
 

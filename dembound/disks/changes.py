@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dembound.casefile.disks.model import DiskCase
+from dembound.casefile.disks.static import changes
 from dembound.disks.contacts.contact_list import ContactList
 from dembound.disks.pressure import in_run
 from dembound.disks.scene import DiskScene
@@ -39,10 +40,7 @@ class Membranes(Every):
 
 def times_of(case: DiskCase) -> list[float]:
     """The times (s) of a run at which something changes, ascending."""
-    static = {} if case.static is None else case.static.boundary
-    times = [*(group.time for group in case.group), *(hole.time for hole in case.hole)]
-    times += [getattr(table, "until", None) for table in static.values()]
-    return sorted({time for time in times if time is not None})
+    return sorted({time for _, time in changes(case.group, case.hole, case.static)})
 
 
 def taken_by(hole: Hole, scene: DiskScene) -> np.ndarray:

@@ -101,11 +101,7 @@ class Work:
             raise CaseError([f"--radius-ratio: figure {number} has no packing of pattern B"])
         if self.changes and not figure.adjustable:
             raise CaseError([f"--set: figure {number} has no case whose keys could be changed"])
-        return replace(self, ratios=self.ratios or figure.ratios).drawn(figure)
-
-    def drawn(self, figure: Figure) -> tuple[Picture, Sequence[Row]]:
-        """The same, with the ratios of this object."""
-        return figure.draw(self)
+        return figure.draw(replace(self, ratios=self.ratios or figure.ratios))
 
     def case(self, name: str, changes: Mapping[str, Any], label: str) -> Case:
         """A shipped case of the paper under a name of its own: with changes of the figure, then those of the user."""
@@ -113,7 +109,7 @@ class Work:
         return replace(with_changes(case, {**LEAN, **changes, **self.changes}), name=label)
 
     def disks(self, name: str, changes: Mapping[str, Any], label: str) -> DiskCase:
-        """The same for a case of disks."""
+        """The case of disks of a name, changed as by `case`; raises CaseError for another kind of body."""
         return as_kind(self.case(name, changes, label), DiskCase, "must be of disks", name)
 
     def run(self, name: str, label: str, **changes: Any) -> Results:
@@ -137,3 +133,9 @@ class Work:
 def dotted(changes: Mapping[str, Any]) -> dict[str, Any]:
     """Changes of a case by its keys: ``run__duration`` for run.duration."""
     return {key.replace("__", "."): value for key, value in changes.items()}
+
+
+def markdown(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """A table in Markdown."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)

@@ -138,9 +138,3 @@ def name_of(case: BarCase) -> str:
 def in_millimetres(range_of: Sequence[float]) -> str:
     """A range in m as "906–909", or "906" where it is a single node."""
     return "–".join(f"{place / MILLI:.4g}" for place in sorted(set(range_of)))
-
-
-def markdown(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """A table in Markdown."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(str(cell) for cell in line)} |" for line in lines)

@@ -1,7 +1,7 @@
 """The strain that pairs have from the start, under a stress at rest.
 
-Without one, compiled code of listed pairs leaps over reading it, so that it is compiled once for bodies with and
-without. Code of pairs in rows, where each step counts, has nothing of it.
+Without one, compiled code of listed pairs does not read it, and is compiled once for bodies with and without. Code of
+pairs in rows, where each step counts, has nothing of it.
 """
 
 from typing import Any

@@ -45,17 +45,7 @@ from dembound.kinds.disks.summary import (
 from dembound.kinds.disks.walls import require_clear
 from dembound.kinds.disks.warnings import disk_warnings
 from dembound.motion.endings import rest_rule
-from dembound.motion.kind import (
-    Beginning,
-    Finding,
-    Kind,
-    MovingPicture,
-    OnLook,
-    Reduction,
-    Slower,
-    Stage,
-    Stages,
-)
+from dembound.motion.kind import Beginning, Finding, Kind, MovingPicture, OnLook, Reduction, Slower, Stage, Stages
 from dembound.motion.memory import Storage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stability import Trial
