@@ -245,17 +245,17 @@ PAPER = Paper(
             ONE,
         ),
         "7": Figure(
-            "P4 by pass from β = 0.5", "β 初值 0.5, P4 速度时程", 139, partial(passes, number="7", start=0.5), ONE
+            "P4 by pass from β = 0.5", "β 初值 0.5, P4 速度时程", 135, partial(passes, number="7", start=0.5), ONE
         ),
         "8": Figure(
-            "P4 by pass from β = 2", "β 初值 2.0, P4 速度时程", 139, partial(passes, number="8", start=2.0), ONE
+            "P4 by pass from β = 2", "β 初值 2.0, P4 速度时程", 133, partial(passes, number="8", start=2.0), ONE
         ),
         "9": Figure("a brick", "基块 (pbrick)", 4, brick, ONE),
         "10": Figure(
-            "packings at the right side", "右侧边界颗粒分布", 10, partial(packings, number="10", names="ABC"), TWO
+            "packings at the right side", "右侧边界颗粒分布", 14, partial(packings, number="10", names="ABC"), TWO
         ),
-        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 100, figure_11, TWO),
-        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 100, figure_12, TWO),
+        "11": Figure("diameters along the right side", "右侧边界颗粒粒径分布", 96, figure_11, TWO),
+        "12": Figure("peaks along the right side, β = 1", "右侧边界速度峰值分布", 98, figure_12, TWO),
         "13": Figure(
             "ratio iteration of all patterns from β = 1",
             "颗粒分布模式对比值迭代过程影响",
